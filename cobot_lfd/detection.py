@@ -1,0 +1,79 @@
+"""What perception is told to look for, and what it says it saw."""
+
+from dataclasses import dataclass
+
+from cobot_lfd.arrays import Array, frozen_array
+from cobot_lfd.frame import Frame
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ObjectModel:
+    """What an object looks like from above: a coloured, horizontal outline at a known height.
+
+    Attributes:
+        name: Name of the object, and of its frame.
+        outline: Corners of the uppermost horizontal contour in the object's own frame [m], counter-clockwise,
+            shape (n, 2): a cube's top face, a container's outer rim.
+        z: Height of that outline in the world [m].
+        colour: Colour under white light, red, green, blue in 0..1, shape (3,).
+        symmetry: Number of turns within a full circle that look the same: 4 for a square, 2 for a rectangle,
+            1 where the outline tells the orientation.
+        base_z: Height of the object's foot in the world [m]; the walls between foot and outline may be seen too.
+        holes: Contours of openings in the same plane [m]: a container's inner rim.
+    """
+
+    name: str
+    outline: Array
+    z: float
+    colour: Array
+    symmetry: int
+    base_z: float
+    holes: tuple[Array, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        object.__setattr__(self, "outline", frozen_array(self.outline, "outline", (None, 2)))
+        object.__setattr__(self, "colour", frozen_array(self.colour, "colour", (3,)))
+        object.__setattr__(self, "holes", tuple(frozen_array(h, "holes", (None, 2)) for h in self.holes))
+        if self.symmetry < 1:
+            raise ValueError(f"symmetry of '{self.name}' is {self.symmetry}; it must be at least 1.")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detection:
+    """An object that was seen, with how well.
+
+    Attributes:
+        name: Name of the object.
+        frame: Its planar pose; where the shape is symmetric, the representative with the angle in
+            (-pi / symmetry, pi / symmetry].
+        symmetry: Number of turns within a full circle that look the same; 1 where the angle is unambiguous.
+        covariance: Of the errors in x [m], y [m] and angle [rad], shape (3, 3).
+        confidence: In 0..1; how much of the expected outline was found where it should be.
+        contour: The outline as seen [px], shape (n, 2).
+    """
+
+    name: str
+    frame: Frame
+    symmetry: int
+    covariance: Array
+    confidence: float
+    contour: Array
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        object.__setattr__(self, "covariance", frozen_array(self.covariance, "covariance", (3, 3)))
+        object.__setattr__(self, "contour", frozen_array(self.contour, "contour", (None, 2)))
+
+
+@dataclass(frozen=True, slots=True)
+class NotSeen:
+    """An object that was looked for and not found.
+
+    Attributes:
+        name: Name of the object.
+        reason: Why, as a sentence for the user.
+    """
+
+    name: str
+    reason: str

@@ -1,0 +1,65 @@
+"""A pose in space: a rotation followed by a translation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from cobot_lfd.arrays import Array, frozen_array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pose:
+    """A rigid motion, named ``parent_from_child`` so that a chain reads by its neighbours.
+
+    Attributes:
+        position: Origin of the child in the parent [m], shape (3,).
+        rotation: Rotation matrix from the child's axes to the parent's, shape (3, 3).
+    """
+
+    position: Array
+    rotation: Array
+
+    def __post_init__(self) -> None:
+        """Copy and check."""
+        object.__setattr__(self, "position", frozen_array(self.position, "position", (3,)))
+        object.__setattr__(self, "rotation", frozen_array(self.rotation, "rotation", (3, 3)))
+        if not np.allclose(self.rotation @ self.rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(self.rotation) < 0:
+            raise ValueError("rotation is no rotation matrix: its rows must be orthonormal, its determinant 1.")
+
+    @classmethod
+    def identity(cls) -> "Pose":
+        """The motion that moves nothing."""
+        return cls(np.zeros(3), np.eye(3))
+
+    @classmethod
+    def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> "Pose":
+        """From a position [m] and a quaternion in the order x, y, z, w."""
+        return cls(np.asarray(position, dtype=np.float64), Rotation.from_quat(np.asarray(xyzw)).as_matrix())
+
+    @classmethod
+    def from_rpy(cls, position: ArrayLike, rpy: ArrayLike) -> "Pose":
+        """From a position [m] and roll, pitch, yaw [rad] about the parent's fixed x, y, z axes, as in a URDF."""
+        return cls(np.asarray(position, dtype=np.float64), Rotation.from_euler("xyz", np.asarray(rpy)).as_matrix())
+
+    @property
+    def quaternion(self) -> Array:
+        """The rotation as a unit quaternion in the order x, y, z, w, shape (4,)."""
+        return np.asarray(Rotation.from_matrix(self.rotation).as_quat(), dtype=np.float64)
+
+    def __matmul__(self, other: "Pose") -> "Pose":
+        """Chain two poses: ``a_from_c = a_from_b @ b_from_c``."""
+        return Pose(self.apply(other.position), self.rotation @ other.rotation)
+
+    def inverse(self) -> "Pose":
+        """The motion that undoes this one."""
+        return Pose(-self.rotation.T @ self.position, self.rotation.T)
+
+    def apply(self, points: ArrayLike) -> Array:
+        """Take points given in the child [m], shape (..., 3), to the parent."""
+        return np.asarray(points, dtype=np.float64) @ self.rotation.T + self.position
+
+    def angle_to(self, other: "Pose") -> float:
+        """Angle of the rotation between the two [rad]."""
+        return float(Rotation.from_matrix(self.rotation.T @ other.rotation).magnitude())
