@@ -35,7 +35,14 @@ class Camera:
 
     @classmethod
     def looking_at(
-        cls, position: ArrayLike, target: ArrayLike, *, up: ArrayLike, field_of_view: float, width: int, height: int
+        cls,
+        position: ArrayLike,
+        target: ArrayLike,
+        *,
+        up: ArrayLike,
+        field_of_view: float,
+        width: int,
+        height: int,
     ) -> "Camera":
         """A camera at ``position`` [m] that looks at ``target`` [m], with ``up`` pointing up in the picture.
 
@@ -52,7 +59,9 @@ class Camera:
         right = _unit(np.cross(forward, np.asarray(up, dtype=np.float64)))
         rotation = np.column_stack([right, np.cross(forward, right), forward])
         focal = 0.5 * height / np.tan(0.5 * field_of_view)
-        matrix = np.array([[focal, 0.0, 0.5 * (width - 1)], [0.0, focal, 0.5 * (height - 1)], [0.0, 0.0, 1.0]])
+        matrix = np.array(
+            [[focal, 0.0, 0.5 * (width - 1)], [0.0, focal, 0.5 * (height - 1)], [0.0, 0.0, 1.0]]
+        )
         return cls(width, height, matrix, Pose(position, rotation))
 
     def project(self, points: ArrayLike) -> Array:
@@ -79,7 +88,9 @@ class Camera:
         """
         pixels = np.asarray(pixels, dtype=np.float64)
         homogeneous = np.concatenate([pixels, np.ones((*pixels.shape[:-1], 1))], axis=-1)
-        rays = np.linalg.solve(self.matrix, homogeneous[..., None])[..., 0] @ self.world_from_camera.rotation.T
+        rays = (
+            np.linalg.solve(self.matrix, homogeneous[..., None])[..., 0] @ self.world_from_camera.rotation.T
+        )
         depth = (z - self.world_from_camera.position[2]) / rays[..., 2:]
         return np.asarray(self.world_from_camera.position[:2] + depth * rays[..., :2])
 

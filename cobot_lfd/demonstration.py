@@ -32,7 +32,9 @@ class Demonstration:
             raise ValueError(f"path has {len(path)} positions; it needs at least 2.")
         if not frames:
             raise ValueError("frames is empty; a demonstration needs at least one frame.")
-        times = frozen_array(np.linspace(0.0, 1.0, len(path)) if times is None else times, "times", (len(path),))
+        times = frozen_array(
+            np.linspace(0.0, 1.0, len(path)) if times is None else times, "times", (len(path),)
+        )
         if (np.diff(times) <= 0).any():
             raise ValueError("times must be strictly increasing; sort them and drop repeated samples.")
         object.__setattr__(self, "path", path)

@@ -25,8 +25,13 @@ class Pose:
         """Copy and check."""
         object.__setattr__(self, "position", frozen_array(self.position, "position", (3,)))
         object.__setattr__(self, "rotation", frozen_array(self.rotation, "rotation", (3, 3)))
-        if not np.allclose(self.rotation @ self.rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(self.rotation) < 0:
-            raise ValueError("rotation is no rotation matrix: its rows must be orthonormal, its determinant 1.")
+        if (
+            not np.allclose(self.rotation @ self.rotation.T, np.eye(3), atol=1e-6)
+            or np.linalg.det(self.rotation) < 0
+        ):
+            raise ValueError(
+                "rotation is no rotation matrix: its rows must be orthonormal, its determinant 1."
+            )
 
     @classmethod
     def identity(cls) -> "Pose":
@@ -41,7 +46,9 @@ class Pose:
     @classmethod
     def from_rpy(cls, position: ArrayLike, rpy: ArrayLike) -> "Pose":
         """From a position [m] and roll, pitch, yaw [rad] about the parent's fixed x, y, z axes, as in a URDF."""
-        return cls(np.asarray(position, dtype=np.float64), Rotation.from_euler("xyz", np.asarray(rpy)).as_matrix())
+        return cls(
+            np.asarray(position, dtype=np.float64), Rotation.from_euler("xyz", np.asarray(rpy)).as_matrix()
+        )
 
     @property
     def quaternion(self) -> Array:

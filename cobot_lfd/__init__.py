@@ -1,0 +1,1 @@
+"""Planar learning and motion for a cobot, as plain values and functions."""

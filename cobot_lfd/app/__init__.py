@@ -1,0 +1,1 @@
+"""The only part that sees everything: recording, pipeline, evaluation, command line."""

@@ -1,0 +1,1 @@
+"""Paths to trajectories: joint paths, limits and timing."""

@@ -1,0 +1,1 @@
+"""The arms: their descriptions, and the arm in the simulation."""

@@ -1,0 +1,1 @@
+"""The scenes: their descriptions, the world built from them, the success checks."""
