@@ -18,7 +18,7 @@ class ObjectModel:
         colour: Colour under white light, red, green, blue in 0..1, shape (3,).
         symmetry: Number of turns within a full circle that look the same: 4 for a square, 2 for a rectangle,
             1 where the outline tells the orientation.
-        base_z: Height of the object's foot in the world [m]; the walls between foot and outline may be seen too.
+        base_z: Height of the object's foot in the world [m]; the walls below the outline may be seen too.
         holes: Contours of openings in the same plane [m]: a container's inner rim.
     """
 

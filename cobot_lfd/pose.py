@@ -45,7 +45,7 @@ class Pose:
 
     @classmethod
     def from_rpy(cls, position: ArrayLike, rpy: ArrayLike) -> "Pose":
-        """From a position [m] and roll, pitch, yaw [rad] about the parent's fixed x, y, z axes, as in a URDF."""
+        """From a position [m] and roll, pitch, yaw [rad] about the fixed x, y, z axes, as in a URDF."""
         return cls(
             np.asarray(position, dtype=np.float64), Rotation.from_euler("xyz", np.asarray(rpy)).as_matrix()
         )
