@@ -1,0 +1,57 @@
+"""Reading a robot's or a scene's TOML file: every fault names the file, the key, what was given and what is allowed."""
+
+import tomllib
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from cobot_lfd.errors import DescriptionError
+
+
+class DescriptionModel(BaseModel):
+    """Base of everything a description file may hold: read-only, and without unknown keys."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_description(file: Path, model: type[Model]) -> Model:
+    """The description in ``file``, validated.
+
+    Args:
+        file: A TOML file.
+        model: The pydantic model that says which keys and values are allowed.
+
+    Raises:
+        DescriptionError: If the file cannot be read, is no TOML, or holds a key or value that is not allowed.
+    """
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise DescriptionError(f"{file}: cannot be read: {error}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise DescriptionError(f"{file}: is no valid TOML: {error}") from error
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise DescriptionError("\n".join(f"{file}: {fault}" for fault in _faults(error))) from error
+
+
+def _faults(error: ValidationError) -> list[str]:
+    """One line for each fault: the key, what is wrong and what was given."""
+    lines = []
+    for fault in error.errors():
+        key = ".".join(str(part) for part in fault["loc"])
+        message = fault["msg"].removeprefix("Value error, ")
+        if fault["type"] == "missing":
+            lines.append(f"{key}: is missing; add it.")
+        elif fault["type"] == "extra_forbidden":
+            lines.append(f"{key}: is no key that is known here; remove it or correct its spelling.")
+        elif fault["type"] == "value_error":
+            lines.append(f"{key}: {message}" if key else message)
+        else:
+            lines.append(f"{key}: {message[0].lower()}{message[1:]}; given: {fault['input']!r}.")
+    return lines
