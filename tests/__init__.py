@@ -1,0 +1,1 @@
+"""The tests: each name is a statement that must be true."""

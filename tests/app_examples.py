@@ -1,0 +1,44 @@
+"""Small made-up episodes and detections for the tests of recording and evaluation."""
+
+import numpy as np
+
+from cobot_lfd.app.episodes import RecordedEpisode
+from cobot_lfd.detection import Detection
+from cobot_lfd.frame import Frame
+from cobot_lfd.outcome import Outcome, Verdict
+
+
+def detection(name: str = "cube", *, x: float = 0.5, y: float = 0.1, angle: float = 0.3) -> Detection:
+    """A square seen at a place."""
+    return Detection(
+        name=name,
+        frame=Frame(np.array([x, y]), angle),
+        symmetry=4,
+        covariance=np.diag([1e-8, 1e-8, 1e-6]),
+        confidence=0.97,
+        contour=np.array([[10.0, 10.0], [20.0, 10.0], [20.0, 20.0], [10.0, 20.0]]),
+    )
+
+
+def episode(seed: int = 3, outcome: Outcome = Outcome.SUCCESS, detail: str = "") -> RecordedEpisode:
+    """An episode of 50 samples with numbers drawn from its seed; samples 10 to 39 are carried."""
+    rng = np.random.default_rng(seed)
+    n_samples = 50
+    return RecordedEpisode(
+        scene="pick_and_place",
+        robot="panda",
+        seed=seed,
+        verdict=Verdict(outcome, detail),
+        times=np.linspace(0.0, 2.0, n_samples),
+        joint_positions=rng.normal(size=(n_samples, 7)),
+        joint_velocities=rng.normal(size=(n_samples, 7)),
+        joint_torques=rng.normal(size=(n_samples, 7)),
+        tool_positions=rng.normal(size=(n_samples, 3)),
+        tool_quaternions=np.tile([1.0, 0.0, 0.0, 0.0], (n_samples, 1)),
+        gripper_openings=rng.uniform(0.0, 0.08, n_samples),
+        hand_forces=rng.normal(size=(n_samples, 3)),
+        hand_torques=rng.normal(size=(n_samples, 3)),
+        carrying=(np.arange(n_samples) >= 10) & (np.arange(n_samples) < 40),
+        picture=rng.integers(0, 256, (24, 32, 3), dtype=np.uint8),
+        detections=(detection("cube"), detection("container", x=0.6, y=-0.2, angle=-0.5)),
+    )
