@@ -1,1 +1,11 @@
 """The arms: their descriptions, and the arm in the simulation."""
+
+from robots.arm import Arm as Arm
+from robots.arm import ArmState as ArmState
+from robots.description import RobotDescription as RobotDescription
+from robots.description import load_robot as load_robot
+from robots.description import robot_names as robot_names
+from robots.kinematics import JointLimitError as JointLimitError
+from robots.kinematics import Kinematics as Kinematics
+from robots.kinematics import KinematicsError as KinematicsError
+from robots.kinematics import NotConvergedError as NotConvergedError

@@ -1,4 +1,4 @@
-"""What is known of a robot: its URDF, joints, limits, tool and gripper, read from ``robots/<name>/robot.toml``."""
+"""What is known of a robot: its URDF, joints, limits, tool and gripper, read from its ``robot.toml``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -85,7 +85,9 @@ class RobotDescription(DescriptionModel):
         lists |= {f"limits.{key}": value for key, value in self.limits}
         for key, values in lists.items():
             if len(values) != len(self.joints):
-                raise ValueError(f"{key} has {len(values)} numbers; it needs one for each of the {len(self.joints)} joints.")
+                raise ValueError(
+                    f"{key} has {len(values)} numbers; it needs one for each of {len(self.joints)} joints."
+                )
         return self
 
     @model_validator(mode="after")
@@ -95,7 +97,9 @@ class RobotDescription(DescriptionModel):
             outside = np.flatnonzero((np.array(posture) < lower) | (np.array(posture) > upper))
             if outside.size:
                 i = int(outside[0])
-                raise ValueError(f"{key}: joint {i + 1} is at {posture[i]} rad; its limits are {lower[i]} to {upper[i]} rad.")
+                raise ValueError(
+                    f"{key}: joint {i + 1} is at {posture[i]} rad; it can take {lower[i]} to {upper[i]} rad."
+                )
         return self
 
     @property

@@ -1,0 +1,166 @@
+"""The arm in the simulation: led by hand, or following a trajectory."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pybullet
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.pose import Pose
+from robots.body import RobotBody
+from robots.description import RobotDescription
+
+_POSITION_GAIN = 0.5  # share of a joint's error that its motor removes in one step
+_VELOCITY_GAIN = 1.0
+_EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArmState:
+    """What the arm's own sensors tell.
+
+    Attributes:
+        positions: Joint positions [rad], shape (n,).
+        velocities: Joint velocities [rad/s], shape (n,).
+        torques: Torques of the joints' motors [N m], shape (n,).
+        world_from_tool: Pose of the tool.
+        tool_velocity: Linear velocity of the tool [m/s], shape (3,).
+        tool_rate: Angular velocity of the tool [rad/s], shape (3,).
+        opening: Distance between the fingers [m].
+    """
+
+    positions: Array
+    velocities: Array
+    torques: Array
+    world_from_tool: Pose
+    tool_velocity: Array
+    tool_rate: Array
+    opening: float
+
+
+class Arm:
+    """A robot arm with a parallel gripper, in a simulation that steps elsewhere.
+
+    Before every step of the simulation call either ``lead`` (the arm is compliant and a hand pulls it) or
+    ``follow`` (the arm holds joint positions), and ``grip`` when the gripper's opening is to change.
+
+    Attributes:
+        description: What is known of the robot.
+        body: Its joints and links in the simulation.
+    """
+
+    def __init__(self, client: Any, description: RobotDescription) -> None:
+        self.description = description
+        self.body = RobotBody(client, description)
+        self._client = client
+        self._torques = np.zeros(len(description.joints))
+        self._led = False
+        self._closing = False
+        self.body.place(np.array(description.parked))
+        for finger in self.body.fingers:
+            client.resetJointState(self.body.id, finger, 0.5 * description.gripper.maximum_opening)
+        self._couple_fingers()
+        for link in self.body.fingertips:
+            client.changeDynamics(
+                self.body.id, link, lateralFriction=description.gripper.friction, spinningFriction=0.002
+            )
+        self.follow(np.array(description.parked), np.zeros(len(description.joints)))
+        self.grip(description.gripper.maximum_opening)
+
+    def state(self) -> ArmState:
+        """What the arm's own sensors tell now."""
+        positions, velocities = self.body.joint_states()
+        linear, angular = self.body.tool_velocity()
+        return ArmState(
+            positions,
+            velocities,
+            self._motor_torques(),
+            self.body.tool_pose(),
+            linear,
+            angular,
+            self.opening(),
+        )
+
+    def lead(self, force: Array, torque: Array) -> None:
+        """Be compliant for one step: weightless, lightly damped, and pulled by a hand at the tool.
+
+        Args:
+            force: The hand's force in the world [N], shape (3,).
+            torque: The hand's torque in the world [N m], shape (3,).
+        """
+        positions, velocities = self.body.joint_states()
+        damping = np.array(self.description.teaching.damping)
+        self._torques = self.body.gravity_torques(positions) - damping * velocities
+        n = len(self.body.joints)
+        self._client.setJointMotorControlArray(
+            self.body.id,
+            self.body.joints,
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=[0.0] * n,
+            forces=[0.0] * n,
+        )
+        self._client.setJointMotorControlArray(
+            self.body.id, self.body.joints, pybullet.TORQUE_CONTROL, forces=self._torques.tolist()
+        )
+        point = self.body.tool_pose().position.tolist()
+        world = pybullet.WORLD_FRAME
+        self._client.applyExternalForce(self.body.id, self.body.tool, list(map(float, force)), point, world)
+        self._client.applyExternalTorque(self.body.id, self.body.tool, list(map(float, torque)), world)
+        self._led = True
+
+    def follow(self, positions: Array, velocities: Array) -> None:
+        """Drive the joints to positions [rad] at velocities [rad/s], each of shape (n,), in the next step."""
+        self._client.setJointMotorControlArray(
+            self.body.id,
+            self.body.joints,
+            pybullet.POSITION_CONTROL,
+            targetPositions=positions.tolist(),
+            targetVelocities=velocities.tolist(),
+            forces=list(self.description.limits.torque),
+            positionGains=[_POSITION_GAIN] * len(positions),
+            velocityGains=[_VELOCITY_GAIN] * len(positions),
+        )
+        self._led = False
+
+    def grip(self, opening: float) -> None:
+        """Move the fingers towards an opening [m] with the gripper's speed and force, from the next step on."""
+        gripper = self.description.gripper
+        self._closing = opening < _EMPTY_OPENING
+        for finger in self.body.fingers:
+            self._client.setJointMotorControl2(
+                self.body.id,
+                finger,
+                pybullet.POSITION_CONTROL,
+                targetPosition=0.5 * opening,
+                force=gripper.force,
+                maxVelocity=0.5 * gripper.speed,
+            )
+
+    def holds_something(self) -> bool:
+        """Whether something keeps the fingers apart that are closing, as the gripper's own encoder tells."""
+        return self._closing and self.opening() > _EMPTY_OPENING
+
+    def opening(self) -> float:
+        """Distance between the fingers [m]."""
+        fingers = self._client.getJointStates(self.body.id, self.body.fingers)
+        return float(sum(finger[0] for finger in fingers))
+
+    def _motor_torques(self) -> Array:
+        if self._led:
+            return self._torques
+        return np.array([state[3] for state in self._client.getJointStates(self.body.id, self.body.joints)])
+
+    def _couple_fingers(self) -> None:
+        """Let the two fingers move by equal amounts, as the belt in the hand makes them."""
+        gear = self._client.createConstraint(
+            self.body.id,
+            self.body.fingers[0],
+            self.body.id,
+            self.body.fingers[1],
+            jointType=pybullet.JOINT_GEAR,
+            jointAxis=[1, 0, 0],
+            parentFramePosition=[0, 0, 0],
+            childFramePosition=[0, 0, 0],
+        )
+        self._client.changeConstraint(gear, gearRatio=-1, erp=0.1, maxForce=50)

@@ -1,0 +1,97 @@
+"""A robot's body in a PyBullet simulation: its joints and tool by name."""
+
+from typing import Any
+
+import numpy as np
+import pybullet
+import pybullet_data
+from pybullet_utils.bullet_client import BulletClient
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.errors import DescriptionError
+from cobot_lfd.pose import Pose
+from robots.description import RobotDescription
+
+
+def connect() -> Any:
+    """A simulation of its own, without a window."""
+    return BulletClient(pybullet.DIRECT)
+
+
+class RobotBody:
+    """The URDF of a robot, loaded at the world's origin with its base fixed.
+
+    Attributes:
+        client: The simulation that the body lives in.
+        id: The body's number in the simulation.
+        joints: Numbers of the arm's joints.
+        fingers: Numbers of the gripper's two finger joints.
+        fingertips: Numbers of the gripper's two fingertip links.
+        tool: Number of the tool link.
+    """
+
+    def __init__(self, client: Any, description: RobotDescription) -> None:
+        self.client = client
+        client.setAdditionalSearchPath(pybullet_data.getDataPath())
+        self.id: int = client.loadURDF(description.urdf, useFixedBase=True)
+        names = [client.getJointInfo(self.id, i) for i in range(client.getNumJoints(self.id))]
+        joints = {info[1].decode(): info[0] for info in names}
+        links = {info[12].decode(): info[0] for info in names}
+        self.joints = [_find(joints, name, "joint", description) for name in description.joints]
+        self.fingers = [_find(joints, name, "joint", description) for name in description.gripper.joints]
+        self.fingertips = [
+            _find(links, name, "link", description) for name in description.gripper.fingertip_links
+        ]
+        self.tool = _find(links, description.tool_link, "link", description)
+        movable = [info[0] for info in names if info[2] != pybullet.JOINT_FIXED]
+        self._columns = [movable.index(joint) for joint in self.joints]
+        self._movable = movable
+
+    def place(self, positions: Array) -> None:
+        """Set the joints to positions [rad], shape (n,), at rest and without physics."""
+        for joint, position in zip(self.joints, positions, strict=True):
+            self.client.resetJointState(self.id, joint, float(position))
+
+    def joint_states(self) -> tuple[Array, Array]:
+        """Positions [rad] and velocities [rad/s] of the arm's joints, each of shape (n,)."""
+        states = self.client.getJointStates(self.id, self.joints)
+        return np.array([s[0] for s in states]), np.array([s[1] for s in states])
+
+    def tool_pose(self) -> Pose:
+        """Pose of the tool in the world."""
+        state = self.client.getLinkState(self.id, self.tool, computeForwardKinematics=True)
+        return Pose.from_quaternion(state[4], state[5])
+
+    def tool_velocity(self) -> tuple[Array, Array]:
+        """Linear [m/s] and angular [rad/s] velocity of the tool in the world, each of shape (3,)."""
+        state = self.client.getLinkState(self.id, self.tool, computeLinkVelocity=True)
+        return np.array(state[6]), np.array(state[7])
+
+    def jacobian(self, positions: Array) -> Array:
+        """Of the tool's linear and angular velocity in the world by the joint velocities, shape (6, n)."""
+        zeros = [0.0] * len(self._movable)
+        linear, angular = self.client.calculateJacobian(
+            self.id, self.tool, [0.0, 0.0, 0.0], self._all_positions(positions), zeros, zeros
+        )
+        return np.vstack([linear, angular])[:, self._columns]
+
+    def gravity_torques(self, positions: Array) -> Array:
+        """Joint torques that hold the arm still against gravity [N m], shape (n,)."""
+        zeros = [0.0] * len(self._movable)
+        torques = self.client.calculateInverseDynamics(self.id, self._all_positions(positions), zeros, zeros)
+        return np.array(torques)[self._columns]
+
+    def _all_positions(self, positions: Array) -> list[float]:
+        """Positions of all movable joints: the arm's as given, the fingers' as they are."""
+        everything = [state[0] for state in self.client.getJointStates(self.id, self._movable)]
+        for column, position in zip(self._columns, positions, strict=True):
+            everything[column] = float(position)
+        return everything
+
+
+def _find(numbers: dict[str, int], name: str, kind: str, description: RobotDescription) -> int:
+    if name not in numbers:
+        raise DescriptionError(
+            f"{description.urdf} has no {kind} named '{name}'; choose among: {', '.join(sorted(numbers))}."
+        )
+    return numbers[name]
