@@ -3,6 +3,7 @@
 import numpy as np
 
 from cobot_lfd.app.episodes import RecordedEpisode
+from cobot_lfd.app.results import EpisodeResult, SeenObject
 from cobot_lfd.detection import Detection
 from cobot_lfd.frame import Frame
 from cobot_lfd.outcome import Outcome, Verdict
@@ -41,4 +42,32 @@ def episode(seed: int = 3, outcome: Outcome = Outcome.SUCCESS, detail: str = "")
         carrying=(np.arange(n_samples) >= 10) & (np.arange(n_samples) < 40),
         picture=rng.integers(0, 256, (24, 32, 3), dtype=np.uint8),
         detections=(detection("cube"), detection("container", x=0.6, y=-0.2, angle=-0.5)),
+    )
+
+
+def seen(position_error: float = 0.0004, angle_error: float = 0.002) -> SeenObject:
+    """A cube that was seen with given errors [m], [rad]."""
+    return SeenObject(
+        name="cube",
+        x=0.5,
+        y=0.1,
+        angle=0.3,
+        symmetry=4,
+        position_error=position_error,
+        angle_error=angle_error,
+    )
+
+
+def result(seed: int = 1000, outcome: Outcome = Outcome.SUCCESS, detail: str = "") -> EpisodeResult:
+    """A result with numbers that have no short decimal form."""
+    return EpisodeResult(
+        seed=seed,
+        scene="pick_and_place",
+        robot="panda",
+        method="improved",
+        verdict=Verdict(outcome, detail),
+        objects=(seen(),),
+        duration=10 / 3,
+        metrics={"length": np.sqrt(2).item()},
+        times={"render": 0.1 + 0.2, "execute": 1.0},
     )

@@ -1,6 +1,7 @@
 """What a recorded episode is, and the demonstration inside it."""
 
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,15 +52,17 @@ def test_repeated_times_are_refused() -> None:
 
 
 def test_a_picture_of_floats_is_refused() -> None:
+    floats: Any = np.zeros((4, 4, 3))
     with pytest.raises(ValueError, match=r"picture has shape \(4, 4, 3\) and type float64; it must be"):
-        replace(episode(), picture=np.zeros((4, 4, 3)))
+        replace(episode(), picture=floats)
 
 
 def test_flags_that_are_not_bool_are_refused() -> None:
+    floats: Any = np.zeros(50)
     with pytest.raises(
         ValueError, match=r"carrying has shape \(50,\) and type float64; it must be \(50,\) of bool"
     ):
-        replace(episode(), carrying=np.zeros(50))
+        replace(episode(), carrying=floats)
 
 
 def test_a_negative_seed_is_refused() -> None:
