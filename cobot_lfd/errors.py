@@ -20,3 +20,7 @@ class DataError(CobotError):
 
 class ModelError(CobotError):
     """A learnt model cannot be read, or does not fit the scene that it is to be used in."""
+
+
+class MotionError(CobotError):
+    """A path or trajectory asks of the arm what its joints cannot do."""
