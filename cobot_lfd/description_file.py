@@ -1,8 +1,9 @@
 """Reading a robot's or a scene's TOML file: every fault names the file, the key, what was given and what is allowed."""
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -12,7 +13,7 @@ from cobot_lfd.errors import DescriptionError
 class DescriptionModel(BaseModel):
     """Base of everything a description file may hold: read-only, and without unknown keys."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -37,14 +38,14 @@ def read_description(file: Path, model: type[Model]) -> Model:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise DescriptionError("\n".join(f"{file}: {fault}" for fault in _faults(error))) from error
+        raise DescriptionError("\n".join(f"{file}: {fault}" for fault in _faults(error, content))) from error
 
 
-def _faults(error: ValidationError) -> list[str]:
+def _faults(error: ValidationError, content: Mapping[str, Any]) -> list[str]:
     """One line for each fault: the key, what is wrong and what was given."""
     lines = []
     for fault in error.errors():
-        key = ".".join(str(part) for part in fault["loc"])
+        key = _written_key(fault["loc"], content)
         message = fault["msg"].removeprefix("Value error, ")
         if fault["type"] == "missing":
             lines.append(f"{key}: is missing; add it.")
@@ -55,3 +56,24 @@ def _faults(error: ValidationError) -> list[str]:
         else:
             lines.append(f"{key}: {message[0].lower()}{message[1:]}; given: {fault['input']!r}.")
     return lines
+
+
+def _written_key(location: tuple[int | str, ...], content: Any) -> str:
+    """A fault's key as the file writes it.
+
+    Where a key such as ``shape = "box"`` chooses between models, pydantic puts the choice (``box``) into the
+    location; it is left out here.
+    """
+    parts = []
+    for part in location:
+        is_choice = isinstance(content, Mapping) and part not in content and part in content.values()
+        if is_choice:
+            continue
+        parts.append(str(part))
+        if isinstance(content, Mapping):
+            content = content.get(part)
+        elif isinstance(content, list) and isinstance(part, int) and part < len(content):
+            content = content[part]
+        else:
+            content = None
+    return ".".join(parts)

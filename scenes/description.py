@@ -1,0 +1,95 @@
+"""A scene as its file describes it: read, checked, and told what is wrong where it is wrong."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from cobot_lfd.description_file import DescriptionModel, read_description
+from cobot_lfd.errors import DescriptionError
+from scenes.quantities import NotNegative, Positive
+from scenes.shapes import ObjectDescription, Table
+from scenes.task import Inside, Task
+from scenes.view import CameraDescription, Light
+
+_FOLDER = Path(__file__).parent
+
+
+class Physics(DescriptionModel):
+    """How the simulation runs.
+
+    Attributes:
+        time_step: Length of a simulation step [s].
+        gravity: Acceleration downwards [m/s²].
+    """
+
+    time_step: Annotated[float, Field(gt=0.0, le=0.02)] = 1 / 240
+    gravity: Positive = 9.81
+
+
+class SceneDescription(DescriptionModel):
+    """A scene: what stands on the table, what is to be done, how it is seen.
+
+    Attributes:
+        title: What the scene is about, for people.
+        centre_distance: Least distance between the origins of two objects [m], so that the gripper has room.
+        physics: How the simulation runs.
+        table: The table.
+        objects: Name to object.
+        camera: The camera.
+        light: The light.
+        task: What is to be done.
+        success: When it counts as done.
+    """
+
+    title: str
+    centre_distance: NotNegative = 0.0
+    physics: Physics = Physics()
+    table: Table
+    objects: Annotated[Mapping[str, ObjectDescription], Field(min_length=1)]
+    camera: CameraDescription
+    light: Light = Light()
+    task: Task
+    success: Inside
+
+    @model_validator(mode="after")
+    def _names_exist(self) -> "SceneDescription":
+        for key, name in self._named_objects():
+            if name not in self.objects:
+                raise ValueError(
+                    f"{key}: no object named '{name}'; choose one of: {', '.join(self.objects)}."
+                )
+        containers = [name for name, item in self.objects.items() if item.shape == "container"]
+        if self.success.container not in containers:
+            allowed = ", ".join(containers) or "there is none"
+            raise ValueError(
+                f"success.container: '{self.success.container}' is no container; choose one of: {allowed}."
+            )
+        return self
+
+    def _named_objects(self) -> Iterator[tuple[str, str]]:
+        yield "task.pick", self.task.pick
+        yield "task.place", self.task.place
+        yield from ((f"task.waypoints.{i}.frame", w.frame) for i, w in enumerate(self.task.waypoints))
+        yield "success.object", self.success.object
+        yield "success.container", self.success.container
+
+
+def scene_names() -> tuple[str, ...]:
+    """Names of the scenes that come with the package, in alphabetical order."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def load_scene(name_or_path: str | Path) -> SceneDescription:
+    """Read a scene by the name of a packaged scene, or from a file whose name ends in ``.toml``.
+
+    Raises:
+        DescriptionError: If there is no such scene, or its file is not as it should be; the message names
+            file, key, value and what is allowed.
+    """
+    if Path(name_or_path).suffix == ".toml":
+        return read_description(Path(name_or_path), SceneDescription)
+    if str(name_or_path) not in scene_names():
+        raise DescriptionError(f"no scene named '{name_or_path}'; choose one of: {', '.join(scene_names())}.")
+    return read_description(_FOLDER / f"{name_or_path}.toml", SceneDescription)

@@ -1,0 +1,113 @@
+"""Pictures of the simulated scene: what its camera would see."""
+
+import importlib.util
+from typing import Literal
+
+import numpy as np
+import pybullet
+from numpy.typing import NDArray
+from pybullet_utils.bullet_client import BulletClient
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.camera import Camera
+from cobot_lfd.errors import CobotError
+from scenes.quiet import quiet_output
+from scenes.view import CameraDescription, Light
+
+Picture = NDArray[np.uint8]
+"""Red, green, blue, shape (height, width, 3)."""
+
+Renderer = Literal["tiny", "egl"]
+"""What draws: PyBullet's own software, or OpenGL by way of EGL."""
+
+# Where a renderer samples a pixel, measured from the pixel's centre [px]; found by measuring, held by a test.
+_GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
+
+_NEAR, _FAR = 0.05, 10.0  # What is nearer to or farther from the camera is not drawn [m].
+
+
+def load_renderer(client: BulletClient, renderer: Renderer) -> int | None:
+    """Make a renderer ready, before anything is built; returns the plugin's number, if it needs one.
+
+    Raises:
+        CobotError: If OpenGL does not work here.
+    """
+    if renderer == "tiny":
+        return None
+    found = importlib.util.find_spec("eglRenderer")
+    plugin = client.loadPlugin(found.origin, "_eglRendererPlugin") if found and found.origin else -1
+    if plugin < 0:
+        raise CobotError("the renderer 'egl' does not start on this machine; use the renderer 'tiny'.")
+    return int(plugin)
+
+
+def take_picture(client: BulletClient, seen: CameraDescription, light: Light, renderer: Renderer) -> Picture:
+    """What a camera sees now.
+
+    Args:
+        client: The simulation.
+        seen: The camera.
+        light: The light.
+        renderer: What draws; it must be the one that the client was made ready for.
+
+    Returns:
+        Red, green, blue, shape (height, width, 3).
+    """
+    camera = seen.camera
+    shifts = (np.arange(seen.samples) + 0.5) / seen.samples - 0.5
+    shots = [
+        _shoot(client, camera, np.array([x, y]) + _GRID_OFFSET[renderer], light, renderer)
+        for y in shifts
+        for x in shifts
+    ]
+    return shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
+
+
+def _shoot(client: BulletClient, camera: Camera, shift: Array, light: Light, renderer: Renderer) -> Picture:
+    """One ray per pixel, through a point off the pixel's centre by ``shift`` [px]."""
+    with quiet_output():
+        image = client.getCameraImage(
+            camera.width,
+            camera.height,
+            viewMatrix=view_matrix(camera).T.ravel().tolist(),
+            projectionMatrix=projection_matrix(camera, shift).T.ravel().tolist(),
+            lightDirection=list(light.direction),
+            lightColor=list(light.colour),
+            lightDistance=light.distance,
+            shadow=int(light.shadow),
+            lightAmbientCoeff=light.ambient,
+            lightDiffuseCoeff=light.diffuse,
+            lightSpecularCoeff=light.specular,
+            renderer=pybullet.ER_TINY_RENDERER if renderer == "tiny" else pybullet.ER_BULLET_HARDWARE_OPENGL,
+            flags=pybullet.ER_NO_SEGMENTATION_MASK,
+        )
+    return np.array(image[2], dtype=np.uint8).reshape(camera.height, camera.width, 4)[..., :3].copy()
+
+
+def view_matrix(camera: Camera) -> Array:
+    """From the world to OpenGL's camera (x right, y up, z towards the viewer), shape (4, 4)."""
+    camera_from_world = camera.world_from_camera.inverse()
+    flip = np.diag([1.0, -1.0, -1.0])
+    matrix = np.eye(4)
+    matrix[:3, :3] = flip @ camera_from_world.rotation
+    matrix[:3, 3] = flip @ camera_from_world.position
+    return matrix
+
+
+def projection_matrix(camera: Camera, shift: Array) -> Array:
+    """From OpenGL's camera to its clip space, shape (4, 4).
+
+    Args:
+        camera: A camera, whose pixel centres lie at whole numbers; OpenGL has the pixels' edges there.
+        shift: Where in a pixel its ray goes through, measured from the pixel's centre [px], shape (2,).
+    """
+    focal_x, focal_y = camera.matrix[0, 0], camera.matrix[1, 1]
+    centre_x, centre_y = camera.matrix[:2, 2] + 0.5 - shift
+    return np.array(
+        [
+            [2 * focal_x / camera.width, 0.0, 1 - 2 * centre_x / camera.width, 0.0],
+            [0.0, 2 * focal_y / camera.height, 2 * centre_y / camera.height - 1, 0.0],
+            [0.0, 0.0, (_FAR + _NEAR) / (_NEAR - _FAR), 2 * _FAR * _NEAR / (_NEAR - _FAR)],
+            [0.0, 0.0, -1.0, 0.0],
+        ]
+    )

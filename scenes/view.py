@@ -1,0 +1,82 @@
+"""How a scene is seen: its camera and its light."""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from cobot_lfd.camera import Camera
+from cobot_lfd.description_file import DescriptionModel
+from scenes.quantities import Positive, Share, Vector
+from scenes.shapes import ColourValue
+
+
+class CameraDescription(DescriptionModel):
+    """A camera without distortion.
+
+    Attributes:
+        position: The camera's centre in the world [m].
+        target: The point in the middle of the picture [m].
+        up: Direction in the world that points up in the picture.
+        field_of_view_deg: Vertical opening angle [degrees].
+        width: Picture width [px].
+        height: Picture height [px].
+        samples: Rays along each side of a pixel that are averaged; 1 leaves the edges jagged.
+    """
+
+    position: Vector
+    target: Vector
+    up: Vector
+    field_of_view_deg: Annotated[float, Field(gt=0.0, lt=180.0)]
+    width: Annotated[int, Field(ge=16, le=4096)] = 640
+    height: Annotated[int, Field(ge=16, le=4096)] = 480
+    samples: Annotated[int, Field(ge=1, le=8)] = 1
+
+    @model_validator(mode="after")
+    def _looks_somewhere(self) -> "CameraDescription":
+        forward = np.subtract(self.target, self.position)
+        if not np.linalg.norm(np.cross(forward, self.up)) > 1e-9:
+            raise ValueError("up must not be parallel to the line from position to target.")
+        return self
+
+    @property
+    def camera(self) -> Camera:
+        """The camera as a value that projects points."""
+        return Camera.looking_at(
+            self.position,
+            self.target,
+            up=self.up,
+            field_of_view=np.deg2rad(self.field_of_view_deg),
+            width=self.width,
+            height=self.height,
+        )
+
+
+class Light(DescriptionModel):
+    """One lamp and the light that comes from everywhere.
+
+    Attributes:
+        direction: From the scene to the lamp.
+        distance: Of the lamp from the world's origin [m].
+        colour: Of the lamp.
+        ambient: Share of light that comes from everywhere.
+        diffuse: Share of light that is scattered evenly.
+        specular: Share of light that is mirrored.
+        shadow: Whether objects throw shadows.
+    """
+
+    direction: Vector = (0.0, 0.0, 1.0)
+    distance: Positive = 2.0
+    colour: ColourValue = (1.0, 1.0, 1.0)
+    ambient: Share = 0.6
+    diffuse: Share = 0.35
+    specular: Share = 0.05
+    shadow: bool = True
+
+    @model_validator(mode="after")
+    def _comes_from_above(self) -> "Light":
+        if self.direction[2] <= 0.0:
+            raise ValueError(
+                f"direction has z = {self.direction[2]}; the lamp must be above the table (z > 0)."
+            )
+        return self

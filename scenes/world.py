@@ -1,0 +1,127 @@
+"""A scene in the simulator, built from its description and a seed; the same two give the same world."""
+
+from collections.abc import Mapping
+from types import MappingProxyType, TracebackType
+from typing import Self
+
+import numpy as np
+import pybullet
+from pybullet_utils.bullet_client import BulletClient
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.frame import Frame
+from cobot_lfd.pose import Pose
+from scenes.bodies import add_object, add_table, object_pose
+from scenes.description import SceneDescription
+from scenes.placement import draw_placements
+from scenes.quiet import quiet_output
+from scenes.rendering import Picture, Renderer, load_renderer, take_picture
+
+
+class World:
+    """A simulated table with objects. Use it in a ``with`` statement; it ends with it.
+
+    Attributes:
+        description: The scene it was built from.
+        client: The physics client; a robot adds itself to it.
+        bodies: Name of an object to its body's number in the client.
+        table: The table's body number in the client.
+    """
+
+    def __init__(self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny") -> None:
+        """Build the world.
+
+        Args:
+            description: The scene.
+            seed: Decides where the objects stand.
+            renderer: What draws the pictures: "tiny" needs nothing, "egl" is faster and draws other colours.
+        """
+        self.description = description
+        with quiet_output():
+            self.client = BulletClient(pybullet.DIRECT)
+            self._plugin = load_renderer(self.client, renderer)
+        self._renderer: Renderer = renderer
+        self._n_steps = 0
+        _set_up_physics(self.client, description)
+        self.table = add_table(self.client, description.table)
+        placements = draw_placements(description, np.random.default_rng(seed))
+        self.bodies: Mapping[str, int] = MappingProxyType(
+            {name: add_object(self.client, description.objects[name], at) for name, at in placements.items()}
+        )
+
+    def __enter__(self) -> Self:
+        """The world itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the simulation."""
+        self.close()
+
+    def close(self) -> None:
+        """End the simulation; the world cannot be used afterwards."""
+        with quiet_output():
+            if self._plugin is not None:
+                self.client.unloadPlugin(self._plugin)
+            self.client.disconnect()
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the world was built [s]."""
+        return self._n_steps * self.description.physics.time_step
+
+    def step(self) -> None:
+        """Let one time step pass."""
+        self.client.stepSimulation()
+        self._n_steps += 1
+
+    def take_picture(self, *, covered: bool = False) -> Picture:
+        """What the scene's camera sees now.
+
+        Args:
+            covered: Whether something covers the lens; the picture is then black.
+
+        Returns:
+            Red, green, blue, shape (height, width, 3).
+        """
+        picture = take_picture(self.client, self.description.camera, self.description.light, self._renderer)
+        return np.zeros_like(picture) if covered else picture
+
+    def true_poses(self) -> Mapping[str, Pose]:
+        """Where the objects really are. Only for the success check, the scripted hand and tests."""
+        return MappingProxyType(
+            {
+                name: object_pose(self.client, body, self.description.objects[name])
+                for name, body in self.bodies.items()
+            }
+        )
+
+    def true_frames(self) -> Mapping[str, Frame]:
+        """The planar part of the true poses. Only for the success check, the scripted hand and tests."""
+        return MappingProxyType({name: _planar(pose) for name, pose in self.true_poses().items()})
+
+    def true_centre(self, name: str) -> Pose:
+        """Where an object's centre of mass really is. Only for the success check and tests."""
+        return Pose.from_quaternion(*self.client.getBasePositionAndOrientation(self.bodies[name]))
+
+    def true_velocity(self, name: str) -> tuple[Array, Array]:
+        """Velocity [m/s] and turn rate [rad/s] of an object, shape (3,) each. Only for the success check."""
+        velocity, turn_rate = self.client.getBaseVelocity(self.bodies[name])
+        return np.array(velocity), np.array(turn_rate)
+
+    def touching(self, name: str, body: int) -> bool:
+        """Whether an object touches a body at this moment. Only for the success check and tests."""
+        return len(self.client.getContactPoints(bodyA=self.bodies[name], bodyB=body)) > 0
+
+
+def _planar(pose: Pose) -> Frame:
+    return Frame(pose.position[:2], float(np.arctan2(pose.rotation[1, 0], pose.rotation[0, 0])))
+
+
+def _set_up_physics(client: BulletClient, description: SceneDescription) -> None:
+    client.resetSimulation()
+    client.setGravity(0.0, 0.0, -description.physics.gravity)
+    client.setPhysicsEngineParameter(
+        fixedTimeStep=description.physics.time_step, deterministicOverlappingPairs=1
+    )
