@@ -124,7 +124,7 @@ class Arm:
         self._led = False
 
     def grip(self, opening: float) -> None:
-        """Move the fingers towards an opening [m] with the gripper's speed and force, from the next step on."""
+        """Move the fingers towards an opening [m] with the speed and force that the gripper has."""
         gripper = self.description.gripper
         self._closing = opening < _EMPTY_OPENING
         for finger in self.body.fingers:
@@ -140,6 +140,10 @@ class Arm:
     def holds_something(self) -> bool:
         """Whether something keeps the fingers apart that are closing, as the gripper's own encoder tells."""
         return self._closing and self.opening() > _EMPTY_OPENING
+
+    def tool_position(self) -> Array:
+        """Where the tool is in the world [m], shape (3,)."""
+        return self.body.tool_position()
 
     def opening(self) -> float:
         """Distance between the fingers [m]."""

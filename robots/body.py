@@ -10,12 +10,14 @@ from pybullet_utils.bullet_client import BulletClient
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import DescriptionError
 from cobot_lfd.pose import Pose
+from cobot_lfd.quiet import quiet_output
 from robots.description import RobotDescription
 
 
 def connect() -> Any:
     """A simulation of its own, without a window."""
-    return BulletClient(pybullet.DIRECT)
+    with quiet_output():
+        return BulletClient(pybullet.DIRECT)
 
 
 class RobotBody:
@@ -33,7 +35,8 @@ class RobotBody:
     def __init__(self, client: Any, description: RobotDescription) -> None:
         self.client = client
         client.setAdditionalSearchPath(pybullet_data.getDataPath())
-        self.id: int = client.loadURDF(description.urdf, useFixedBase=True)
+        with quiet_output():
+            self.id: int = client.loadURDF(description.urdf, useFixedBase=True)
         names = [client.getJointInfo(self.id, i) for i in range(client.getNumJoints(self.id))]
         joints = {info[1].decode(): info[0] for info in names}
         links = {info[12].decode(): info[0] for info in names}
@@ -61,6 +64,10 @@ class RobotBody:
         """Pose of the tool in the world."""
         state = self.client.getLinkState(self.id, self.tool, computeForwardKinematics=True)
         return Pose.from_quaternion(state[4], state[5])
+
+    def tool_position(self) -> Array:
+        """Position of the tool in the world [m], shape (3,)."""
+        return np.array(self.client.getLinkState(self.id, self.tool, computeForwardKinematics=True)[4])
 
     def tool_velocity(self) -> tuple[Array, Array]:
         """Linear [m/s] and angular [rad/s] velocity of the tool in the world, each of shape (3,)."""

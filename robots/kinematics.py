@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import CobotError
 from cobot_lfd.pose import Pose
+from cobot_lfd.quiet import quiet_output
 from robots.body import RobotBody, connect
 from robots.description import RobotDescription
 
@@ -35,9 +36,9 @@ class JointLimitError(KinematicsError):
 class Kinematics:
     """Forward and inverse kinematics of an arm.
 
-    The steps of the inverse kinematics are Gauss-Newton steps on the pose error, with a motion towards the home
-    posture in the null space of the Jacobian, so that a redundant arm's elbow stays where it belongs. PyBullet's
-    own solver lets the elbow drift along a path and says nothing when it fails.
+    The steps of the inverse kinematics are Gauss-Newton steps on the pose error, with a motion towards the
+    home posture in the null space of the Jacobian, so that a redundant arm's elbow stays where it belongs.
+    PyBullet's own solver lets the elbow drift along a path and says nothing when it fails.
     """
 
     def __init__(self, description: RobotDescription) -> None:
@@ -56,7 +57,8 @@ class Kinematics:
 
     def close(self) -> None:
         """Leave the simulation."""
-        self._client.disconnect()
+        with quiet_output():
+            self._client.disconnect()
 
     def forward(self, positions: Array) -> Pose:
         """Pose of the tool in the world at joint positions [rad], shape (n,)."""
@@ -111,10 +113,10 @@ class Kinematics:
 
     def _step(self, positions: Array, error: Array) -> Array:
         """A damped Gauss-Newton step on the pose error, and towards home where that is free."""
-        J = self._body.jacobian(positions)
-        inverse = J.T @ np.linalg.inv(J @ J.T + _DAMPING * np.eye(6))
-        null_space = np.eye(len(positions)) - inverse @ J
-        return np.asarray(inverse @ error + _POSTURE_GAIN * null_space @ (self._home - positions))
+        U, sigma, Vt = np.linalg.svd(self._body.jacobian(positions), full_matrices=False)
+        task = Vt.T @ (sigma / (sigma**2 + _DAMPING) * (U.T @ error))
+        posture = _POSTURE_GAIN * (self._home - positions)
+        return np.asarray(task + posture - Vt.T @ (Vt @ posture))
 
     def _require_limits(self, positions: Array, pose: Pose) -> None:
         outside = np.flatnonzero(

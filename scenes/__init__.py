@@ -4,6 +4,6 @@ from scenes.description import SceneDescription as SceneDescription
 from scenes.description import load_scene as load_scene
 from scenes.description import scene_names as scene_names
 from scenes.outlines import object_models as object_models
-from scenes.success import Verdict as Verdict
 from scenes.success import check_success as check_success
+from scenes.task import Task as Task
 from scenes.world import World as World

@@ -24,7 +24,7 @@ class Physics(DescriptionModel):
         gravity: Acceleration downwards [m/s²].
     """
 
-    time_step: Annotated[float, Field(gt=0.0, le=0.02)] = 1 / 240
+    time_step: Annotated[float, Field(gt=0.0, le=0.02)] = 1 / 500
     gravity: Positive = 9.81
 
 

@@ -11,7 +11,7 @@ from pybullet_utils.bullet_client import BulletClient
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.errors import CobotError
-from scenes.quiet import quiet_output
+from cobot_lfd.quiet import quiet_output
 from scenes.view import CameraDescription, Light
 
 Picture = NDArray[np.uint8]

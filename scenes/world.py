@@ -11,10 +11,10 @@ from pybullet_utils.bullet_client import BulletClient
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame
 from cobot_lfd.pose import Pose
+from cobot_lfd.quiet import quiet_output
 from scenes.bodies import add_object, add_table, object_pose
 from scenes.description import SceneDescription
 from scenes.placement import draw_placements
-from scenes.quiet import quiet_output
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
 
 

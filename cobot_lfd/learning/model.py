@@ -43,6 +43,7 @@ class TaskParameterisedGMM:
     """A task-parameterised model of a path: made by ``fit`` or ``load``.
 
     Attributes:
+        method: Name of the method that it was fitted by; "custom" where settings of one's own were given.
         names: The frames, in the model's order.
         oriented: Whether each frame's direction matters.
         encoding: What is known of the path seen from each frame.
@@ -51,6 +52,7 @@ class TaskParameterisedGMM:
         dimension: 2 for planar tasks, 3 for spatial ones.
     """
 
+    method: str
     names: tuple[str, ...]
     oriented: tuple[bool, ...]
     encoding: Encoding
@@ -88,7 +90,15 @@ class TaskParameterisedGMM:
         oriented = _kinds(data, chosen)
         encoding, oriented = _encode(data, chosen, oriented, rng)
         visits = find_visits(data) if chosen.ring_direction is RingDirection.SEQUENCE else None
-        return cls(data.names, oriented, encoding, visits, data.duration, data.paths.shape[-1])
+        return cls(
+            method if settings is None else "custom",
+            data.names,
+            oriented,
+            encoding,
+            visits,
+            data.duration,
+            data.paths.shape[-1],
+        )
 
     @property
     def frame_kinds(self) -> Mapping[str, FrameKind]:

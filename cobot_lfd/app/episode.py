@@ -1,0 +1,205 @@
+"""One episode: see the scene, generate a path, plan the motion, carry it out, let the physics judge."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+
+from cobot_lfd.app.execute import Observer, execute
+from cobot_lfd.app.perceive import View, perceive
+from cobot_lfd.app.plan import Stage, plan_motion
+from cobot_lfd.app.results import EpisodeResult, SeenObject
+from cobot_lfd.arrays import Array
+from cobot_lfd.detection import NotSeen
+from cobot_lfd.errors import ModelError, MotionError
+from cobot_lfd.frame import Frame
+from cobot_lfd.learning.model import TaskParameterisedGMM
+from cobot_lfd.learning.path import GeneratedPath
+from cobot_lfd.outcome import Outcome, Verdict
+from cobot_lfd.tool import grasp_yaw
+from robots import Arm, JointLimitError, Kinematics, NotConvergedError, RobotDescription
+from scenes import SceneDescription, World, check_success
+
+_TIME_LIMIT = 60.0  # [s] of the arm's motion, after which a person would have stopped it
+
+_FAILURES: dict[type[Exception], Outcome] = {
+    ModelError: Outcome.GENERATION_FAILED,
+    NotConvergedError: Outcome.IK_NOT_CONVERGED,
+    JointLimitError: Outcome.UNREACHABLE_POSE,
+    MotionError: Outcome.LIMITS_VIOLATED,
+}
+"""Errors that end an episode, not the program."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bench:
+    """What stays the same from episode to episode.
+
+    Attributes:
+        scene_name: Name of the scene.
+        robot_name: Name of the robot.
+        scene: The scene.
+        robot: The robot.
+        kinematics: Of the robot.
+        model: What was learnt.
+        covered: Whether something covers the camera's lens.
+    """
+
+    scene_name: str
+    robot_name: str
+    scene: SceneDescription
+    robot: RobotDescription
+    kinematics: Kinematics
+    model: TaskParameterisedGMM
+    covered: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EpisodeRun:
+    """An episode with all that a person may want to look at.
+
+    Attributes:
+        result: What happened.
+        view: What the camera saw.
+        path: The path that was generated; None where it did not come to that.
+    """
+
+    result: EpisodeResult
+    view: View
+    path: GeneratedPath | None
+
+
+class _EpisodeFailedError(Exception):
+    """Ends an episode early; never leaves this file."""
+
+    def __init__(self, verdict: Verdict) -> None:
+        super().__init__(verdict.sentence)
+        self.verdict = verdict
+
+
+@dataclass(slots=True)
+class _Notes:
+    """What is known of the episode so far."""
+
+    times: dict[str, float] = field(default_factory=dict)
+    metrics: dict[str, float] = field(default_factory=dict)
+    path: GeneratedPath | None = None
+    duration: float | None = None
+
+    @contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Note how long the program needs for a stage, also where it fails."""
+        start = perf_counter()
+        try:
+            yield
+        finally:
+            self.times[stage] = perf_counter() - start
+
+
+def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | None = None) -> EpisodeRun:
+    """Perform the task once in the scene that the seed lays out.
+
+    From the picture on, nothing but the success check knows where the objects really are.
+
+    Args:
+        bench: Scene, robot and model.
+        seed: Decides the scene's layout.
+        film: Given the world, returns what is to be called after each step of the simulation.
+    """
+    notes = _Notes()
+    with notes.timed("build"):
+        world = World(bench.scene, seed)
+    with world:
+        arm = Arm(world.client, bench.robot)
+        true_frames = world.true_frames()
+        with notes.timed("perceive"):
+            view = perceive(world, covered=bench.covered)
+        try:
+            verdict = _attempt(bench, world, arm, view, notes, film(world) if film else None)
+        except _EpisodeFailedError as failure:
+            verdict = failure.verdict
+        except tuple(_FAILURES) as error:
+            verdict = Verdict(_FAILURES[type(error)], str(error))
+    return EpisodeRun(_result(bench, seed, verdict, view, true_frames, notes), view, notes.path)
+
+
+def _attempt(
+    bench: Bench, world: World, arm: Arm, view: View, notes: _Notes, observer: Observer | None
+) -> Verdict:
+    """Generate, plan, execute, check."""
+    frames = _required_frames(bench, view)
+    with notes.timed("generate"):
+        notes.path = bench.model.reproduce(frames)
+    path = notes.path.mean
+    _require_on_table(bench.scene, path)
+    with notes.timed("plan"):
+        stages = plan_motion(bench.kinematics, bench.robot, bench.scene.task, path, _yaw(bench, view))
+    notes.duration = sum(stage.trajectory.duration for stage in stages)
+    notes.metrics["path_length"] = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    if notes.duration > _TIME_LIMIT:
+        detail = f"the motion would take {notes.duration:.0f} s; {_TIME_LIMIT:.0f} s are allowed"
+        raise _EpisodeFailedError(Verdict(Outcome.TIMEOUT, detail))
+    with notes.timed("execute"):
+        return _carry_out(world, arm, stages, path, notes, observer)
+
+
+def _carry_out(
+    world: World, arm: Arm, stages: tuple[Stage, ...], path: Array, notes: _Notes, observer: Observer | None
+) -> Verdict:
+    execution = execute(world, arm, stages, observer=observer)
+    if len(execution.carried):
+        notes.metrics["tracking_error"] = _farthest_from(path, execution.carried)
+    return execution.failure or check_success(world, (arm.body.id,))
+
+
+def _required_frames(bench: Bench, view: View) -> dict[str, Frame]:
+    """The frames that the model and the grasp need; fails where one was not seen."""
+    for name in dict.fromkeys([*bench.model.frame_kinds, bench.scene.task.pick]):
+        found = view.find(name)
+        if isinstance(found, NotSeen):
+            raise _EpisodeFailedError(Verdict(Outcome.OBJECT_NOT_SEEN, f"{name}: {found.reason}"))
+    return {name: view.frames[name] for name in bench.model.frame_kinds}
+
+
+def _yaw(bench: Bench, view: View) -> float:
+    seen = view.find(bench.scene.task.pick)
+    if isinstance(seen, NotSeen):
+        raise _EpisodeFailedError(Verdict(Outcome.OBJECT_NOT_SEEN, f"{seen.name}: {seen.reason}"))
+    return grasp_yaw(seen.frame.angle, seen.symmetry)
+
+
+def _require_on_table(scene: SceneDescription, path: Array) -> None:
+    low = np.array(scene.table.centre) - 0.5 * np.array(scene.table.size)
+    high = np.array(scene.table.centre) + 0.5 * np.array(scene.table.size)
+    outside = np.flatnonzero(((path < low) | (path > high)).any(axis=1))
+    if outside.size:
+        x, y = path[outside[0]]
+        detail = f"at ({x:.3f}, {y:.3f}) m it is not above the table"
+        raise _EpisodeFailedError(Verdict(Outcome.PATH_LEAVES_WORKSPACE, detail))
+
+
+def _farthest_from(path: Array, points: Array) -> float:
+    """Largest distance of the points from the polygon through the path [m]."""
+    start, step = path[:-1], np.diff(path, axis=0)
+    squared = np.maximum((step**2).sum(axis=1), 1e-18)
+    along = ((points[:, None] - start) * step).sum(axis=2) / squared
+    nearest = start + np.clip(along, 0.0, 1.0)[..., None] * step
+    return float(np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1).max())
+
+
+def _result(
+    bench: Bench, seed: int, verdict: Verdict, view: View, true_frames: Mapping[str, Frame], notes: _Notes
+) -> EpisodeResult:
+    return EpisodeResult(
+        seed=seed,
+        scene=bench.scene_name,
+        robot=bench.robot_name,
+        method=bench.model.method,
+        verdict=verdict,
+        objects=tuple(SeenObject.of(seen, true_frames[seen.name]) for seen in view.detections),
+        duration=notes.duration,
+        metrics=notes.metrics,
+        times=notes.times,
+    )

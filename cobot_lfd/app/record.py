@@ -1,0 +1,80 @@
+"""Recording: a hand leads the arm through the task, and everything that happens is kept."""
+
+from itertools import count
+
+import numpy as np
+
+from cobot_lfd.app.episodes import RecordedEpisode
+from cobot_lfd.app.hand import Hand, ScriptedHand
+from cobot_lfd.app.perceive import View, perceive
+from cobot_lfd.app.recorder import Recorder
+from cobot_lfd.app.script import write_script
+from cobot_lfd.outcome import Outcome, Verdict
+from cobot_lfd.tool import grasp_yaw
+from robots import Arm, load_robot
+from scenes import SceneDescription, World, check_success, load_scene, object_models
+
+_SAMPLE_PERIOD = 0.01  # [s] between two recorded samples
+_HAND_STREAM = 1  # keeps the hand's randomness apart from that of the scene's layout, which has the same seed
+
+
+def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpisode:
+    """One demonstration by the scripted hand.
+
+    Args:
+        scene_name: Name of the scene.
+        robot_name: Name of the robot.
+        seed: Decides the scene's layout and how the hand varies.
+
+    Raises:
+        DescriptionError: If there is no such scene or robot.
+    """
+    scene, robot = load_scene(scene_name), load_robot(robot_name)
+    with World(scene, seed) as world:
+        arm = Arm(world.client, robot)
+        view = perceive(world)
+        recorder = Recorder()
+        lead(world, arm, _scripted_hand(scene, world, arm, seed), recorder)
+        verdict = _judge(world, arm, view)
+        return recorder.episode(scene_name, robot_name, seed, verdict, view.picture, view.detections)
+
+
+def lead(world: World, arm: Arm, hand: Hand, recorder: Recorder) -> None:
+    """Let a hand lead the compliant arm until it is done, and record what happens."""
+    every = max(1, round(_SAMPLE_PERIOD / world.description.physics.time_step))
+    opening = arm.opening()
+    for tick in count():
+        state = arm.state()
+        action = hand.act(state)
+        if action is None:
+            return
+        if action.opening != opening:
+            opening = action.opening
+            arm.grip(opening)
+        arm.lead(action.force, action.torque)
+        if tick % every == 0:
+            recorder.add(world.time, state, action)
+        world.step()
+
+
+def _scripted_hand(scene: SceneDescription, world: World, arm: Arm, seed: int) -> ScriptedHand:
+    """A hand for this scene; it stands for a person, who sees where the objects are."""
+    frames = world.true_frames()
+    symmetry = {model.name: model.symmetry for model in object_models(scene)}[scene.task.pick]
+    script = write_script(
+        scene.task,
+        frames,
+        start=arm.state().world_from_tool,
+        yaw=grasp_yaw(frames[scene.task.pick].angle, symmetry),
+        maximum_opening=arm.description.gripper.maximum_opening,
+        time_step=scene.physics.time_step,
+        rng=np.random.default_rng([seed, _HAND_STREAM]),
+    )
+    return ScriptedHand(script, scene.physics.time_step)
+
+
+def _judge(world: World, arm: Arm, view: View) -> Verdict:
+    """Whether the demonstration can be learnt from: the task is done, and the camera saw the objects."""
+    if view.missing:
+        return Verdict(Outcome.OBJECT_NOT_SEEN, f"{view.missing[0].name}: {view.missing[0].reason}")
+    return check_success(world, (arm.body.id,))
