@@ -6,4 +6,5 @@ from scenes.description import scene_names as scene_names
 from scenes.outlines import object_models as object_models
 from scenes.success import check_success as check_success
 from scenes.task import Task as Task
+from scenes.view import CameraDescription as CameraDescription
 from scenes.world import World as World

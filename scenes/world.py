@@ -16,6 +16,7 @@ from scenes.bodies import add_object, add_table, object_pose
 from scenes.description import SceneDescription
 from scenes.placement import draw_placements
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
+from scenes.view import CameraDescription
 
 
 class World:
@@ -76,16 +77,18 @@ class World:
         self.client.stepSimulation()
         self._n_steps += 1
 
-    def take_picture(self, *, covered: bool = False) -> Picture:
-        """What the scene's camera sees now.
+    def take_picture(self, *, camera: CameraDescription | None = None, covered: bool = False) -> Picture:
+        """What a camera sees now.
 
         Args:
+            camera: The camera; the scene's own by default.
             covered: Whether something covers the lens; the picture is then black.
 
         Returns:
             Red, green, blue, shape (height, width, 3).
         """
-        picture = take_picture(self.client, self.description.camera, self.description.light, self._renderer)
+        seen = camera or self.description.camera
+        picture = take_picture(self.client, seen, self.description.light, self._renderer)
         return np.zeros_like(picture) if covered else picture
 
     def true_poses(self) -> Mapping[str, Pose]:
