@@ -23,7 +23,7 @@ lint: $(VENV)/.installed-dev
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
-	find cobot_lfd robots scenes perception tests tools -name __pycache__ -type d -prune -exec rm -rf {} +
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # Installed again only when pyproject.toml changes; our own files are used where they are.
 $(VENV)/.installed: pyproject.toml | $(BIN)/pip
