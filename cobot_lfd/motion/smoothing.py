@@ -11,6 +11,7 @@ from scipy.linalg import LinAlgError, solveh_banded
 from scipy.sparse import csr_array
 
 from cobot_lfd.arrays import Array
+from cobot_lfd.motion.splines import spline_matrix
 
 DEGREE = 5
 WEIGHTS = np.logspace(-26.0, -2.0, 97)
@@ -29,7 +30,7 @@ def fit_spline(u: Array, x: Array, tolerance: float) -> BSpline:
     if tolerance == 0 or len(u) <= DEGREE + 1:
         return interpolating
     knots = interpolating.t
-    values = csr_array(BSpline.design_matrix(u, knots, DEGREE))
+    values = spline_matrix(u, knots, DEGREE)
     roughness = _roughness(knots)
     best = interpolating
     low, high = 0, len(WEIGHTS)
@@ -68,21 +69,5 @@ def _roughness(knots: Array) -> csr_array:
     nodes, weights = np.polynomial.legendre.leggauss(3)
     half = np.diff(breaks)[:, None] / 2
     at = (breaks[:-1, None] + half * (1 + nodes)).ravel()
-    third = csr_array(BSpline.design_matrix(at, knots[3:-3], DEGREE - 3))
-    for degree in (DEGREE - 2, DEGREE - 1, DEGREE):
-        third = third @ _derivative_matrix(knots[DEGREE - degree : len(knots) - (DEGREE - degree)], degree)
+    third = spline_matrix(at, knots, DEGREE, order=3)
     return csr_array(third.T @ (third * (half * weights).ravel()[:, None]))
-
-
-def _derivative_matrix(knots: Array, degree: int) -> csr_array:
-    """The matrix from the coefficients of a spline to those of its derivative."""
-    n = len(knots) - degree - 1
-    factors = degree / (knots[degree + 1 : degree + n] - knots[1:n])
-    rows = np.arange(n - 1)
-    return csr_array(
-        (
-            np.concatenate([-factors, factors]),
-            (np.concatenate([rows, rows]), np.concatenate([rows, rows + 1])),
-        ),
-        shape=(n - 1, n),
-    )

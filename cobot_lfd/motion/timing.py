@@ -11,13 +11,17 @@ from cobot_lfd.motion.limit_check import check_positions
 from cobot_lfd.motion.limits import JointLimits
 from cobot_lfd.motion.path import JointPath
 from cobot_lfd.motion.time_law import TimeLaw
+from cobot_lfd.motion.timing_near_optimal import near_optimal_law
 from cobot_lfd.motion.timing_simple import simple_law
 from cobot_lfd.motion.timing_stretch import stretch_to_limits
 from cobot_lfd.motion.trajectory import JointTrajectory, TimedPath
 
-TimingMethod = Literal["simple"]
+TimingMethod = Literal["simple", "near_optimal"]
 
-METHODS: dict[TimingMethod, Callable[[JointPath, JointLimits], TimeLaw]] = {"simple": simple_law}
+METHODS: dict[TimingMethod, Callable[[JointPath, JointLimits], TimeLaw]] = {
+    "simple": simple_law,
+    "near_optimal": near_optimal_law,
+}
 
 
 def time_path(path: JointPath, limits: JointLimits, *, method: TimingMethod = "simple") -> JointTrajectory:
@@ -30,7 +34,8 @@ def time_path(path: JointPath, limits: JointLimits, *, method: TimingMethod = "s
         path: Where the joints go.
         limits: What the joints can do.
         method: ``"simple"`` moves s with one trapezoid of acceleration: the hardest place of the path sets
-            the pace of all of it.
+            the pace of all of it. ``"near_optimal"`` solves a few linear programs and comes within a few
+            percent of the fastest motion that velocity and acceleration limits alone would allow.
 
     Raises:
         ValueError: If path and limits have different numbers of joints, or there is no such method.

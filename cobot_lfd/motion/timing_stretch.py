@@ -4,7 +4,10 @@ A motion played ``k`` times slower has its velocities divided by ``k``, its acce
 jerks by ``k^3``: one number brings all of them within their limits.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.motion.limits import JointLimits
@@ -18,6 +21,14 @@ MARGIN = 1e-4
 """Part of the time that is given away so that no limit is exceeded between two samples."""
 
 
+class JointDerivatives(NamedTuple):
+    """Velocity, acceleration and jerk of each joint, each of shape (K, n)."""
+
+    velocity: Array
+    acceleration: Array
+    jerk: Array
+
+
 def stretch_to_limits(path: JointPath, law: TimeLaw, limits: JointLimits) -> TimeLaw:
     """The law stretched (or compressed) so that the largest ratio of a derivative to its limit is 1."""
     return law.stretched((1 + MARGIN) * stretch_factor(path, law, limits, N_SAMPLES))
@@ -25,39 +36,49 @@ def stretch_to_limits(path: JointPath, law: TimeLaw, limits: JointLimits) -> Tim
 
 def stretch_factor(path: JointPath, law: TimeLaw, limits: JointLimits, n_samples: int) -> float:
     """How many times as long the law has to take so that its largest derivative-to-limit ratio is 1."""
-    law_states = _states(law, n_samples)
-    slopes = [path(law_states[:, 0], order) for order in (1, 2, 3)]
-    ratios = [
-        (np.abs(value) / limit).max()
-        for value, limit in zip(
-            joint_derivatives(*slopes, *law_states[:, 1:].T[:, :, None]),
-            (limits.velocity, limits.acceleration, limits.jerk),
-            strict=True,
-        )
-    ]
-    return float(max(ratios[0], ratios[1] ** (1 / 2), ratios[2] ** (1 / 3)))
+    return float(local_stretch(path, law, limits, np.linspace(0.0, law.duration, n_samples)).max())
+
+
+def local_stretch(path: JointPath, law: TimeLaw, limits: JointLimits, times: Array) -> Array:
+    """How many times as long the law would have to take, were the limits those of one moment only.
+
+    Args:
+        path: Where the joints go.
+        law: When they are where.
+        limits: What the joints can do.
+        times: The moments [s], shape (K,).
+
+    Returns:
+        The factors at ``times``, then those on both sides of each step of the law's jerk, shape (K + 2 B,).
+    """
+    s, ds, dds, ddds = _states(law, times)
+    derivatives = joint_derivatives(path, s, ds, dds, ddds)
+    velocity = np.abs(derivatives.velocity / limits.velocity).max(axis=1)
+    acceleration = np.abs(derivatives.acceleration / limits.acceleration).max(axis=1)
+    jerk = np.abs(derivatives.jerk / limits.jerk).max(axis=1)
+    return np.asarray(np.maximum(velocity, np.maximum(np.sqrt(acceleration), np.cbrt(jerk))))
 
 
 def joint_derivatives(
-    p1: Array, p2: Array, p3: Array, ds: Array, dds: Array, ddds: Array
-) -> tuple[Array, Array, Array]:
+    path: JointPath, s: Array, ds: ArrayLike, dds: ArrayLike, ddds: ArrayLike
+) -> JointDerivatives:
     """Velocity, acceleration and jerk of ``p(s(t))``, by the chain rule.
 
     Args:
-        p1: First derivative of the path in s, shape (K, n); p2 and p3: the second and the third.
-        p2: See p1.
-        p3: See p1.
-        ds: First time derivative of s, shape (K, 1); dds and ddds: the second and the third.
-        dds: See ds.
-        ddds: See ds.
+        path: The path p.
+        s: The parameter, shape (K,).
+        ds: First time derivative of s, shape (K,).
+        dds: Second time derivative of s, shape (K,).
+        ddds: Third time derivative of s, shape (K,).
     """
-    return p1 * ds, p2 * ds**2 + p1 * dds, p3 * ds**3 + 3 * p2 * ds * dds + p1 * ddds
+    p1, p2, p3 = (path(s, order) for order in (1, 2, 3))
+    d1, d2, d3 = (np.asarray(d, dtype=np.float64)[:, None] for d in (ds, dds, ddds))
+    return JointDerivatives(p1 * d1, p2 * d1**2 + p1 * d2, p3 * d1**3 + 3 * p2 * d1 * d2 + p1 * d3)
 
 
-def _states(law: TimeLaw, n_samples: int) -> Array:
-    """The parameter and its three derivatives at even times and on both sides of jerk steps, shape (K, 4)."""
-    even = np.linspace(0.0, law.duration, n_samples)
-    inside = np.column_stack([law(even, order) for order in range(4)])
-    starts = np.column_stack([law.states, law.jerks])
-    ends = np.column_stack([*(law(law.times[1:], order) for order in range(3)), law.jerks])
-    return np.vstack([inside, starts, ends])
+def _states(law: TimeLaw, times: Array) -> Array:
+    """The parameter and its derivatives at ``times``, then on both sides of jerk steps, shape (4, K + 2 B)."""
+    inside = np.array([law(times, order) for order in range(4)])
+    starts = np.vstack([law.states.T, law.jerks])
+    ends = np.vstack([[law(law.times[1:], order) for order in range(3)], law.jerks])
+    return np.hstack([inside, starts, ends])
