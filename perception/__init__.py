@@ -1,1 +1,3 @@
-"""Pictures to frames."""
+"""From pictures to frames: what stands where on the table, and how sure that is."""
+
+from perception.shape_detector import detect as detect

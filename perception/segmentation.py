@@ -1,0 +1,130 @@
+"""Regions of the picture that have an object's colour, told from the table and from the other objects."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.detection import ObjectModel
+from perception.picture import Picture
+from perception.table import chromaticity, table_colour
+
+_LEAST_SHARE = (
+    0.4  # Of the colour difference between table and object: from here on a pixel may be the object.
+)
+_MOST_DEVIATION = 0.6  # Of a pixel from the line between table and object, as a share of the difference.
+_N_NOISE = 5.0  # Standard deviations of the table's colour that never count as an object.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """A connected part of the picture that has an object's colour.
+
+    Attributes:
+        hull: Corners of its convex hull [px], shape (n, 2).
+        centroid: Middle of its pixels [px], shape (2,).
+        area: Number of pixels of the full picture [px].
+        colour: Its typical colour, red, green, blue in 0..255, shape (3,).
+        at_border: Whether it touches the picture's edge.
+    """
+
+    hull: Array
+    centroid: Array
+    area: float
+    colour: Array
+    at_border: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """What the picture shows of a table and of objects.
+
+    Attributes:
+        table: The table's colour, red, green, blue in 0..255, shape (3,).
+        regions: For each object the regions that have its colour, the largest first.
+        scale: Side of the squares of pixels that were averaged before [px].
+    """
+
+    table: Array
+    regions: tuple[tuple[Region, ...], ...]
+    scale: int
+
+
+def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segmentation | None:
+    """Find the regions of each object's colour; None if the picture is too dark.
+
+    Colours are compared as differences from the table's colour, as it is in this picture: a mixture of table
+    and object lies between the two, a shadow changes neither.
+
+    Args:
+        picture: The picture.
+        models: The objects.
+        scale: Side of the squares of pixels that are averaged first [px].
+    """
+    height, width = picture.shape[:2]
+    size = (width // scale, height // scale)
+    small = cv2.resize(
+        picture[: size[1] * scale, : size[0] * scale], size, interpolation=cv2.INTER_AREA
+    ).astype(np.float64)
+    table = table_colour(small)
+    if table is None:
+        return None
+    labels = _label(small, table, models)
+    regions = tuple(_regions(labels == i, small, scale) for i in range(len(models)))
+    return Segmentation(table, regions, scale)
+
+
+def _label(small: Array, table: Array, models: Sequence[ObjectModel]) -> Array:
+    """For each pixel the number of the object whose colour it has, -1 for none, shape (height, width)."""
+    difference = chromaticity(small) - chromaticity(table)
+    shares, deviations = [], []
+    for model in models:
+        expected = chromaticity(model.colour) - chromaticity(table)
+        share = difference @ expected / (expected @ expected)
+        noise = 1.4826 * float(np.median(np.abs(share)))
+        off_line = np.linalg.norm(difference - share[..., None] * expected, axis=-1) / np.linalg.norm(
+            expected
+        )
+        unlike = (share < max(_LEAST_SHARE, _N_NOISE * noise)) | (off_line > _MOST_DEVIATION * share)
+        shares.append(~unlike)
+        deviations.append(np.where(unlike, np.inf, off_line / np.maximum(share, 1e-9)))
+    nearest = np.argmin(deviations, axis=0)
+    return np.where(np.any(shares, axis=0), nearest, -1)
+
+
+def _regions(mask: Array, small: Array, scale: int) -> tuple[Region, ...]:
+    """The connected parts of a mask, the largest first."""
+    count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    order = sorted(range(1, count), key=lambda i: -stats[i, cv2.CC_STAT_AREA])
+    return tuple(
+        _region(np.asarray(labels), i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
+        for i in order
+    )
+
+
+def _region(
+    labels: NDArray[Any], i: int, stat: NDArray[Any], centroid: Array, small: Array, scale: int
+) -> Region:
+    x, y, width, height = stat[:4]
+    part = labels[y : y + height, x : x + width] == i
+    rows, columns = np.nonzero(part)
+    hull = cv2.convexHull(np.column_stack([columns + x, rows + y]).astype(np.float32))[:, 0]
+    core = cv2.erode(part.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) > 0
+    colours = small[y : y + height, x : x + width][core if core.any() else part]
+    at_border = x == 0 or y == 0 or x + width == labels.shape[1] or y + height == labels.shape[0]
+    return Region(
+        hull=_full_size(hull, scale),
+        centroid=_full_size(centroid, scale),
+        area=float(stat[cv2.CC_STAT_AREA]) * scale**2,
+        colour=np.median(colours, axis=0),
+        at_border=bool(at_border),
+    )
+
+
+def _full_size(pixels: NDArray[Any], scale: int) -> Array:
+    """Places in the small picture as places in the full one [px]."""
+    return np.asarray((pixels + 0.5) * scale - 0.5, dtype=np.float64)
