@@ -70,6 +70,12 @@ def test_the_plot_names_frames_and_their_kinds(tmp_path: Path) -> None:
         assert f"<!-- {label}" in text, label
 
 
+def test_without_demonstrations_the_path_is_plotted_alone(tmp_path: Path) -> None:
+    text = plot_model([], FRAMES, generated(), file=tmp_path / "plot.svg").read_text()
+    assert "the path generated" in text
+    assert "demonstrations" not in text
+
+
 def test_another_ending_is_told(tmp_path: Path) -> None:
     with pytest.raises(
         CobotError, match=r"cannot plot to .*plot\.gif: its name must end in one of: \.pdf, \.png"

@@ -21,7 +21,7 @@ from cobot_lfd.learning.path import GeneratedPath
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
 FRAME_COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 """Colours that colour-blind people tell apart too (Okabe and Ito 2008)."""
@@ -45,7 +45,7 @@ def plot_model(
     """Plot the demonstrations, in the world and as each frame sees them, and the path for a new scene.
 
     Args:
-        demonstrations: What was learnt from.
+        demonstrations: What was learnt from; empty to plot the path alone.
         frames: The new scene's frames.
         path: The planar path that was generated for it, with its covariance.
         file: Where the plot goes; its ending chooses PNG, SVG or PDF.
@@ -62,20 +62,31 @@ def plot_model(
         raise CobotError(f"cannot plot to {file}: its name must end in one of: {', '.join(_FILE_KINDS)}.")
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13.0, 7.0), layout="constrained")
+    figure = Figure(figsize=(13.0, 7.0) if demonstrations else (7.5, 7.0), layout="constrained")
     if title:
         figure.suptitle(title)
-    columns = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
-    left, right = figure.add_subfigure(columns[0]), figure.add_subfigure(columns[1])
     colours = dict(zip(frames, FRAME_COLOURS * len(frames), strict=False))
-    panels = left.subplot_mosaic([["world"] * len(frames), list(frames)], height_ratios=(1.3, 1.0))
-    _plot_world(panels["world"], demonstrations, colours)
-    for name, colour in colours.items():
-        kind = (kinds or {}).get(name)
-        _plot_local(panels[name], demonstrations, name, colour, "" if kind is None else f"\n({kind.value})")
+    columns = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
+    if demonstrations:
+        _plot_demonstrations(figure.add_subfigure(columns[0]), demonstrations, colours, kinds or {})
+    right = figure.add_subfigure(columns[1] if demonstrations else columns[:])
     _plot_generated(right.subplots(), frames, path, colours)
-    right.legend(loc="outside lower center", ncols=3, frameon=False)
+    right.legend(loc="outside lower center", ncols=3 if demonstrations else 2, frameon=False)
     return _save(figure, file)
+
+
+def _plot_demonstrations(
+    figure: SubFigure,
+    demonstrations: Sequence[Demonstration],
+    colours: Mapping[str, str],
+    kinds: Mapping[str, FrameKind],
+) -> None:
+    """The demonstrations in the world above, and below as each frame sees them."""
+    grid = figure.add_gridspec(2, len(colours), height_ratios=(1.3, 1.0))
+    _plot_world(figure.add_subplot(grid[0, :]), demonstrations, colours)
+    for column, (name, colour) in enumerate(colours.items()):
+        kind = f"\n({kinds[name].value})" if name in kinds else ""
+        _plot_local(figure.add_subplot(grid[1, column]), demonstrations, name, colour, kind)
 
 
 def _plot_world(axes: Axes, demonstrations: Sequence[Demonstration], colours: Mapping[str, str]) -> None:
