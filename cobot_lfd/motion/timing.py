@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cobot_lfd.arrays import Array, frozen_array
-from cobot_lfd.motion.limit_check import check_positions
+from cobot_lfd.motion.limit_check import check_limits, check_positions
 from cobot_lfd.motion.limits import JointLimits
 from cobot_lfd.motion.path import JointPath
 from cobot_lfd.motion.time_law import TimeLaw
@@ -27,8 +27,8 @@ METHODS: dict[TimingMethod, Callable[[JointPath, JointLimits], TimeLaw]] = {
 def time_path(path: JointPath, limits: JointLimits, *, method: TimingMethod = "simple") -> JointTrajectory:
     """Follow the path from rest to rest, within velocity, acceleration and jerk limits of every joint.
 
-    The arm stays on the path by construction: ``q(t) = p(s(t))``. A path that goes nowhere gives a trajectory
-    of duration 0.
+    The arm stays on the path by construction: ``q(t) = p(s(t))``. What is returned has passed ``check_limits``.
+    A path that goes nowhere gives a trajectory of duration 0.
 
     Args:
         path: Where the joints go.
@@ -52,7 +52,9 @@ def time_path(path: JointPath, limits: JointLimits, *, method: TimingMethod = "s
     if path.is_constant:
         return JointTrajectory.hold(path(0.0), 0.0)
     law = stretch_to_limits(path, METHODS[method](path, limits), limits)
-    return JointTrajectory((TimedPath(path, law),))
+    trajectory = JointTrajectory((TimedPath(path, law),))
+    check_limits(trajectory, limits)
+    return trajectory
 
 
 def move(start: ArrayLike, goal: ArrayLike, limits: JointLimits) -> JointTrajectory:

@@ -1,7 +1,7 @@
 """The near-optimal timing: warp a base law by a few linear programs, then stretch it exactly.
 
-A first program, without jerk limits, finds the pace; each later one starts at the result of the one before and
-gains on it (sequential convex programming). Breaks are spread evenly over the time of the current law, and
+A first program, without jerk limits, finds the pace; each later one starts at the result of the one before
+and gains on it (sequential convex programming). Breaks are spread evenly over the time of the current law, and
 doubled where the law exceeds a limit between the points at which the programs keep it.
 """
 

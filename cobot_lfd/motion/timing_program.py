@@ -4,9 +4,9 @@ Velocity and acceleration limits are linear in c and its derivatives. The jerk l
 
     |q''' c + 3/2 q'' c' + 1/2 q' c''| <= J / sqrt(c).
 
-Its right side is convex in c, so its tangent at any c0, ``J (3 c0 - c) / (2 c0^(3/2))``, lies below it: with
-the tangent in its place the limit is linear, and kept. The time, the integral of ``1 / sqrt(c)``, is replaced by
-its tangent as well, which makes the objective ``max integral c / c0^(3/2)``.
+Its right side is convex in c, so its tangent at any c0, ``J (3 c0 - c) / (2 c0^(3/2))``, lies below it:
+with the tangent in its place the limit is linear, and kept. The time, the integral of ``1 / sqrt(c)``, is
+replaced by its tangent as well, which makes the objective ``max integral c / c0^(3/2)``.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ from cobot_lfd.motion.timing_stretch import joint_derivatives
 from cobot_lfd.motion.timing_warp import DEGREE, Warp, full_knots, gauss_points
 
 CHECKS = np.array([1e-6, 1 / 3, 2 / 3, 1 - 1e-6])
-"""Where limits are kept between two breaks. The jerk steps at the breaks: both sides of each are among them."""
+"""Where limits are kept between two breaks. The jerk steps at breaks: both sides of each are among them."""
 
 SLOWEST = 1e-4
 """Smallest c / c0, which keeps c positive."""

@@ -17,6 +17,9 @@ from cobot_lfd.motion.time_law import TimeLaw
 N_SAMPLES = 20000
 """Samples along a law; between two of them a ratio grows by less than the margin."""
 
+N_AT_PEAK = 101
+"""Further samples around the one at which the ratio is largest."""
+
 MARGIN = 1e-4
 """Part of the time that is given away so that no limit is exceeded between two samples."""
 
@@ -31,7 +34,11 @@ class JointDerivatives(NamedTuple):
 
 def stretch_to_limits(path: JointPath, law: TimeLaw, limits: JointLimits) -> TimeLaw:
     """The law stretched (or compressed) so that the largest ratio of a derivative to its limit is 1."""
-    return law.stretched((1 + MARGIN) * stretch_factor(path, law, limits, N_SAMPLES))
+    times = np.linspace(0.0, law.duration, N_SAMPLES)
+    coarse = local_stretch(path, law, limits, times)
+    peak = np.clip(np.argmax(coarse[:N_SAMPLES]) + np.array([-1, 1]), 0, N_SAMPLES - 1)
+    fine = local_stretch(path, law, limits, np.linspace(*times[peak], N_AT_PEAK))
+    return law.stretched((1 + MARGIN) * float(max(coarse.max(), fine.max())))
 
 
 def stretch_factor(path: JointPath, law: TimeLaw, limits: JointLimits, n_samples: int) -> float:
@@ -77,7 +84,7 @@ def joint_derivatives(
 
 
 def _states(law: TimeLaw, times: Array) -> Array:
-    """The parameter and its derivatives at ``times``, then on both sides of jerk steps, shape (4, K + 2 B)."""
+    """The parameter and its derivatives at ``times``, then on both sides of jerk steps, (4, K + 2 B)."""
     inside = np.array([law(times, order) for order in range(4)])
     starts = np.vstack([law.states.T, law.jerks])
     ends = np.vstack([[law(law.times[1:], order) for order in range(3)], law.jerks])

@@ -1,8 +1,8 @@
 """A faster time law from a slower one, by warping its time.
 
-Let a base law lead along the path, and call its time ``tau``. Played at the rate ``dtau/dt = sqrt(c(tau))`` it is
-another law. In the square ``c`` of the rate, joint velocity, acceleration and jerk are, with ``q(tau)`` the joint
-positions under the base law and ' its derivative,
+Let a base law lead along the path, and call its time ``tau``. Played at the rate ``dtau/dt = sqrt(c(tau))``
+it is another law. In the square ``c`` of the rate, joint velocity, acceleration and jerk are, with ``q(tau)``
+the joint positions under the base law and ' its derivative,
 
     q' sqrt(c),   q'' c + q' c' / 2,   (q''' c + 3/2 q'' c' + 1/2 q' c'') sqrt(c).
 
