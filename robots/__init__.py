@@ -1,5 +1,9 @@
 """The arms: their descriptions, and the arm in the simulation."""
 
+from cobot_lfd.quiet import import_quietly
+
+import_quietly("pybullet")
+
 from robots.arm import Arm as Arm
 from robots.arm import ArmState as ArmState
 from robots.description import RobotDescription as RobotDescription

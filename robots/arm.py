@@ -123,6 +123,11 @@ class Arm:
         )
         self._led = False
 
+    def hold(self) -> None:
+        """Stay where the arm is now, until something else is asked of it."""
+        positions, _ = self.body.joint_states()
+        self.follow(positions, np.zeros_like(positions))
+
     def grip(self, opening: float) -> None:
         """Move the fingers towards an opening [m] with the speed and force that the gripper has."""
         gripper = self.description.gripper

@@ -1,5 +1,9 @@
 """Scenes: a file each, the simulated world that is built from it, and the check of success."""
 
+from cobot_lfd.quiet import import_quietly
+
+import_quietly("pybullet")
+
 from scenes.description import SceneDescription as SceneDescription
 from scenes.description import load_scene as load_scene
 from scenes.description import scene_names as scene_names

@@ -1,6 +1,8 @@
 """Recording: a hand leads the arm through the task, and everything that happens is kept."""
 
-from itertools import count
+from collections.abc import Callable
+from itertools import count, islice
+from pathlib import Path
 
 import numpy as np
 
@@ -9,6 +11,8 @@ from cobot_lfd.app.hand import Hand, ScriptedHand
 from cobot_lfd.app.perceive import View, perceive
 from cobot_lfd.app.recorder import Recorder
 from cobot_lfd.app.script import write_script
+from cobot_lfd.app.store import list_episodes, load_episode, save_episode
+from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.tool import grasp_yaw
 from robots import Arm, load_robot
@@ -77,4 +81,52 @@ def _judge(world: World, arm: Arm, view: View) -> Verdict:
     """Whether the demonstration can be learnt from: the task is done, and the camera saw the objects."""
     if view.missing:
         return Verdict(Outcome.OBJECT_NOT_SEEN, f"{view.missing[0].name}: {view.missing[0].reason}")
+    arm.hold()
     return check_success(world, (arm.body.id,))
+
+
+def record_session(
+    scene_name: str,
+    robot_name: str,
+    folder: Path,
+    *,
+    n_episodes: int,
+    first_seed: int,
+    report: Callable[[str], None] | None = None,
+) -> list[RecordedEpisode]:
+    """Record demonstrations into a folder; each is safe on disk before the next begins.
+
+    Args:
+        scene_name: Name of the scene.
+        robot_name: Name of the robot.
+        folder: Folder of episodes; what is in it already stays.
+        n_episodes: How many to record.
+        first_seed: Of the first episode; the next ones count upwards, leaving out seeds that the folder has.
+        report: Called with a sentence after each episode.
+
+    Raises:
+        DescriptionError: If there is no such scene or robot.
+        DataError: If the folder cannot be written, or holds demonstrations of another scene or robot.
+    """
+    taken = _seeds_in(folder, scene_name, robot_name)
+    fresh_seeds = (seed for seed in count(first_seed) if seed not in taken)
+    episodes = []
+    for seed in islice(fresh_seeds, n_episodes):
+        episode = record_episode(scene_name, robot_name, seed)
+        file = save_episode(folder, episode)
+        if report is not None:
+            report(f"{file}: {episode.verdict.sentence}")
+        episodes.append(episode)
+    return episodes
+
+
+def _seeds_in(folder: Path, scene_name: str, robot_name: str) -> set[int]:
+    """Seeds of the episodes that a folder holds already."""
+    episodes = [load_episode(file) for file in list_episodes(folder)] if folder.is_dir() else []
+    for episode in episodes:
+        if (episode.scene, episode.robot) != (scene_name, robot_name):
+            raise DataError(
+                f"{folder} holds demonstrations of {episode.scene} with {episode.robot}; "
+                f"record {scene_name} with {robot_name} into another folder."
+            )
+    return {episode.seed for episode in episodes}
