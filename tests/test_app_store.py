@@ -239,6 +239,7 @@ def test_what_was_kept_survives_a_kill_at_any_moment(tmp_path: Path) -> None:
         reported = _received(receiver)
         assert [load_episode(path).seed for path in list_episodes(folder)][: len(reported)] == reported
         assert load_episode(save_episode(folder, episode(77))).seed == 77
+        assert not list(folder.glob(".*.partial"))
 
 
 def _received(receiver: Connection) -> list[int]:
@@ -249,6 +250,18 @@ def _received(receiver: Connection) -> list[int]:
     except EOFError:
         pass
     return reported
+
+
+def test_only_unfinished_episodes_are_tidied_up(tmp_path: Path) -> None:
+    for name in (".0123.episode.partial", ".0123.partial", "notes.txt"):
+        (tmp_path / name).write_bytes(b"half")
+    save_episode(tmp_path, episode())
+    assert {path.name for path in tmp_path.iterdir()} == {
+        ".lock",
+        ".0123.partial",
+        "notes.txt",
+        "episode_000000.h5",
+    }
 
 
 def test_two_recorders_at_once_lose_nothing(tmp_path: Path) -> None:

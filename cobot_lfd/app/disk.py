@@ -54,13 +54,18 @@ def folder_lock(folder: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
-def write_temporary(folder: Path, contents: bytes) -> Path:
+def write_temporary(folder: Path, contents: bytes, *, ending: str = ".partial") -> Path:
     """Write a new hidden file whose contents are on the disk when this returns.
+
+    Args:
+        folder: The folder in which the file will get its name.
+        contents: All that is to be in it.
+        ending: Ending of the hidden name, by which left-over files can be told apart.
 
     Raises:
         OSError: If the disk is full or the folder cannot be written; no file is left then.
     """
-    path = folder / f".{secrets.token_hex(8)}.partial"
+    path = folder / f".{secrets.token_hex(8)}{ending}"
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
     try:
         with os.fdopen(descriptor, "wb") as file:

@@ -14,6 +14,7 @@ from cobot_lfd.errors import DataError
 TRASH = "trash"
 """Folder inside a folder of episodes to which unwanted ones are moved; their numbers stay taken."""
 
+_UNFINISHED = ".episode.partial"
 _NAME = re.compile(r"episode_(\d{6,})\.h5")
 
 
@@ -41,8 +42,9 @@ def save_episode(folder: Path, episode: RecordedEpisode) -> Path:
     with told(folder, "save an episode in"):
         folder.mkdir(parents=True, exist_ok=True)
         with folder_lock(folder):
+            _remove_left_over(folder)
             path = folder / f"episode_{_next_number(folder):06d}.h5"
-            move_into_place(write_temporary(folder, contents), path)
+            move_into_place(write_temporary(folder, contents, ending=_UNFINISHED), path)
         sync_folder(folder.parent)
     return path
 
@@ -101,6 +103,12 @@ def load_demonstrations(
             f"no demonstration in {folder} can be learnt from ({_counted(episodes)}); record more into it."
         )
     return kept
+
+
+def _remove_left_over(folder: Path) -> None:
+    """Remove what killed recorders left unfinished; inside the folder's lock no other one is at work."""
+    for path in folder.glob(f".*{_UNFINISHED}"):
+        path.unlink(missing_ok=True)
 
 
 def _next_number(folder: Path) -> int:
