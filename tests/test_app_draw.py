@@ -61,6 +61,13 @@ def test_the_path_is_drawn_where_the_camera_would_see_it() -> None:
     assert all(is_near(drawn, pixel, PATH_COLOUR) for pixel in in_picture(path, 0.1))
 
 
+def test_a_path_from_an_object_starts_where_its_frame_is_drawn() -> None:
+    seen = detection(x=0.52, y=-0.05)
+    path = np.linspace(seen.frame.position, [0.5, 0.1], 30)
+    drawn = draw_detections(GREY, CAMERA, [], models=[CUBE], path=path)
+    assert all(is_near(drawn, pixel, PATH_COLOUR) for pixel in in_picture(path, CUBE.z))
+
+
 def test_nothing_seen_leaves_the_picture_as_it_was() -> None:
     picture: Picture = np.random.default_rng(0).integers(0, 256, (480, 640, 3), dtype=np.uint8)
     assert_array_equal(draw_detections(picture, CAMERA, [], scale=1), picture)

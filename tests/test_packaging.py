@@ -23,7 +23,7 @@ socket_events = []
 sys.addaudithook(lambda event, _: socket_events.append(event) if event.startswith("socket.") else None)
 import cobot_lfd
 for module in pkgutil.walk_packages(cobot_lfd.__path__, "cobot_lfd."):
-    if not module.name.startswith("cobot_lfd.app"):
+    if not module.name.startswith(("cobot_lfd.app", "cobot_lfd.__main__")):
         __import__(module.name)
 print(json.dumps({"modules": sorted(sys.modules), "socket_events": socket_events}))
 """

@@ -29,7 +29,7 @@ def draw_detections(
     *,
     models: Iterable[ObjectModel] = (),
     path: ArrayLike | None = None,
-    path_z: float = 0.0,
+    path_z: float | None = None,
     scale: int = 2,
 ) -> Picture:
     """Draw each object's outline, axes, name and standard errors on an enlarged copy of the camera's picture.
@@ -42,7 +42,8 @@ def draw_detections(
             found, so that one sees how well it fits, and its axes at the height of that outline. One without
             gets the contour that was seen, and its axes on the table.
         path: A planar path to be drawn too [m], shape (T, 2); None for no path.
-        path_z: Height at which the path is drawn [m]; on the table one sees what it passes over.
+        path_z: Height at which the path is drawn [m]; None for that of the highest outline, so that path and
+            frames are seen in one plane, or for the table where there are no models.
         scale: How many times the picture is enlarged, so that thin lines and small text stay legible.
 
     Returns:
@@ -51,7 +52,8 @@ def draw_detections(
     by_name = {model.name: model for model in models}
     canvas = _Canvas(picture, camera, scale)
     if path is not None:
-        canvas.path(np.asarray(path, dtype=np.float64), path_z)
+        highest = max((model.z for model in by_name.values()), default=0.0)
+        canvas.path(np.asarray(path, dtype=np.float64), highest if path_z is None else path_z)
     detections = tuple(detections)
     for detection in detections:
         _draw_shape(canvas, detection, by_name.get(detection.name))

@@ -1,10 +1,7 @@
 """Videos that a browser plays: VP8 in a WebM file."""
 
-import os
 import secrets
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -15,8 +12,11 @@ from numpy.typing import NDArray
 
 from cobot_lfd.app.disk import move_into_place, sync_file, told
 from cobot_lfd.errors import CobotError
+from cobot_lfd.quiet import quiet_output
 
 CODEC = "VP80"
+STDERR = 2
+"""Where the encoder prints notes, below Python, even when all is well; they are kept off the console."""
 
 
 class VideoWriter:
@@ -73,7 +73,7 @@ class VideoWriter:
                 f"frame {self._n_frames} is {width} x {height} px; those before are "
                 f"{self._size[0]} x {self._size[1]} px."
             )
-        with _quiet_errors():
+        with quiet_output(STDERR):
             self._encoder.write(np.ascontiguousarray(frame[..., ::-1]))
         self._n_frames += 1
 
@@ -87,7 +87,7 @@ class VideoWriter:
         """Finish the video and give the file its name, or remove it if the block failed."""
         try:
             if self._encoder is not None:
-                with _quiet_errors():
+                with quiet_output(STDERR):
                     self._encoder.release()
             if error is None:
                 self._keep()
@@ -96,7 +96,7 @@ class VideoWriter:
                 self._temporary.unlink(missing_ok=True)
 
     def _open(self) -> cv2.VideoWriter:
-        with _quiet_errors():
+        with quiet_output(STDERR):
             encoder = cv2.VideoWriter(
                 str(self._temporary), cv2.CAP_FFMPEG, cv2.VideoWriter.fourcc(*CODEC), self.fps, self._size
             )
@@ -121,23 +121,9 @@ class VideoWriter:
 
 def _count_frames(file: Path) -> int:
     """Number of frames according to the file's own index, which is written last."""
-    with _quiet_errors():
+    with quiet_output(STDERR):
         capture = cv2.VideoCapture(str(file), cv2.CAP_FFMPEG)
         try:
             return round(capture.get(cv2.CAP_PROP_FRAME_COUNT))
         finally:
             capture.release()
-
-
-@contextmanager
-def _quiet_errors() -> Iterator[None]:
-    """Keep the encoder's notes, which it prints below Python even when all is well, off the console."""
-    sys.stderr.flush()
-    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 2)
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
