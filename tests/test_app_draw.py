@@ -81,8 +81,9 @@ def test_the_camera_picture_itself_is_not_drawn_on() -> None:
 
 def test_an_object_at_the_lower_edge_is_labelled_inside_the_picture() -> None:
     low = np.array([[300.0, 440.0], [340.0, 440.0], [340.0, 478.0], [300.0, 478.0]])
-    drawn = draw_detections(GREY, CAMERA, [replace(detection(), contour=low)])
-    label_area = drawn[2 * 395 : 2 * 440, 2 * 300 : 2 * 400]
+    x, y = CAMERA.to_plane(low.mean(axis=0), 0.0).tolist()
+    drawn = draw_detections(GREY, CAMERA, [replace(detection(x=x, y=y), contour=low)])
+    label_area = drawn[2 * 350 : 2 * 440, 2 * 250 : 2 * 400]
     assert (label_area == 255).all(axis=2).sum() > 100
 
 

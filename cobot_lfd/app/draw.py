@@ -19,6 +19,7 @@ WHITE, DARK = (255, 255, 255), (20, 20, 20)
 X_COLOUR, Y_COLOUR = (255, 140, 60), (110, 235, 180)  # orange and green that colour-blind eyes tell apart
 OUTLINE_COLOUR, PATH_COLOUR = (240, 228, 66), (86, 180, 233)
 
+_ROOM_FOR_LETTER = 8.0  # [px] around the tip of an axis, where its name stands
 _SUBPIXEL_BITS = 4  # OpenCV draws at multiples of 1/16 px
 
 
@@ -55,10 +56,9 @@ def draw_detections(
         highest = max((model.z for model in by_name.values()), default=0.0)
         canvas.path(np.asarray(path, dtype=np.float64), highest if path_z is None else path_z)
     detections = tuple(detections)
-    for detection in detections:
-        _draw_shape(canvas, detection, by_name.get(detection.name))
-    for detection in detections:
-        _draw_label(canvas, detection)
+    extents = [_draw_shape(canvas, detection, by_name.get(detection.name)) for detection in detections]
+    for detection, extent in zip(detections, extents, strict=True):
+        _draw_label(canvas, detection, extent)
     return canvas.picture
 
 
@@ -73,7 +73,8 @@ def save_picture(picture: Picture, file: Path) -> Path:
     return file
 
 
-def _draw_shape(canvas: "_Canvas", detection: Detection, model: ObjectModel | None) -> None:
+def _draw_shape(canvas: "_Canvas", detection: Detection, model: ObjectModel | None) -> Array:
+    """Outline and axes; returns the pixels between which they lie."""
     if model is None:
         canvas.polygon(detection.contour, OUTLINE_COLOUR)
     else:
@@ -82,19 +83,20 @@ def _draw_shape(canvas: "_Canvas", detection: Detection, model: ObjectModel | No
     z = 0.0 if model is None else model.z
     length = 0.05 if model is None else 0.8 * float(np.linalg.norm(model.outline, axis=1).max())
     origin = detection.frame.position
-    for axis, (name, colour) in enumerate((("x", X_COLOUR), ("y", Y_COLOUR))):
-        tip = origin + length * detection.frame.rotation[:, axis]
-        canvas.arrow(canvas.project(origin, z), canvas.project(tip, z), name, colour)
+    tips = canvas.project(origin + length * detection.frame.rotation.T, z)
+    for tip, name, colour in zip(tips, "xy", (X_COLOUR, Y_COLOUR), strict=True):
+        canvas.arrow(canvas.project(origin, z), tip, name, colour)
+    return np.concatenate([detection.contour, tips - _ROOM_FOR_LETTER, tips + _ROOM_FOR_LETTER])
 
 
-def _draw_label(canvas: "_Canvas", detection: Detection) -> None:
+def _draw_label(canvas: "_Canvas", detection: Detection, extent: Array) -> None:
     """Name and standard errors below the object, or above where there is no room below."""
     sigma = np.sqrt(np.diag(detection.covariance))
     millimetres, degrees = 1e3 * np.hypot(sigma[0], sigma[1]), np.rad2deg(sigma[2])
     lines = [detection.name, f"±{millimetres:.2f} mm  ±{degrees:.2f}°"]
     if detection.confidence < 0.9:
         lines.append(f"{100 * detection.confidence:.0f} % of its outline seen")
-    canvas.text_below(detection.contour, lines)
+    canvas.text_below(extent, lines)
 
 
 class _Canvas:
@@ -137,10 +139,10 @@ class _Canvas:
         middle = self._enlarged(tip + 7.0 * along)
         self._text(name, middle + self._scale * np.array([-3.0, 3.5]), colour)
 
-    def text_below(self, contour: Array, lines: list[str]) -> None:
+    def text_below(self, extent: Array, lines: list[str]) -> None:
         height = 10.0 * self._scale
-        left = self._enlarged(contour.min(axis=0))[0]
-        top, bottom = self._enlarged(contour)[:, 1].min(), self._enlarged(contour)[:, 1].max()
+        left = self._enlarged(extent.min(axis=0))[0]
+        top, bottom = self._enlarged(extent)[:, 1].min(), self._enlarged(extent)[:, 1].max()
         fits = bottom + (len(lines) + 1) * height < self.picture.shape[0]
         y = bottom + 2.0 * height if fits else top - (len(lines) - 0.2) * height
         for number, line in enumerate(lines):
