@@ -96,7 +96,7 @@ def _positions(trajectory: JointTrajectory, limits: JointLimits) -> Array:
             "use the limits of the arm that the path is for."
         )
     n_steps = int(np.ceil(trajectory.duration * RATE))
-    return trajectory.sample(np.arange(-3, n_steps + 4) / RATE).positions
+    return trajectory.positions(np.arange(-3, n_steps + 4) / RATE)
 
 
 def _differences(positions: Array, order: int) -> Array:

@@ -30,37 +30,40 @@ def fit_spline(u: Array, x: Array, tolerance: float) -> BSpline:
     if tolerance == 0 or len(u) <= DEGREE + 1:
         return interpolating
     knots = interpolating.t
+    line = x[0] + _middles(knots)[:, None] * (
+        x[-1] - x[0]
+    )  # Coefficients of the straight way from end to end.
     values = spline_matrix(u, knots, DEGREE)
     roughness = _roughness(knots)
     best = interpolating
     low, high = 0, len(WEIGHTS)
     while low < high:
         middle = (low + high) // 2
-        spline = _smoothed(knots, values, roughness, x, len(u) * WEIGHTS[middle])
-        if spline is not None and np.abs(spline(u) - x).max() <= tolerance:
-            best, low = spline, middle + 1
+        detour = _smoothed(values, roughness, x - values @ line, len(u) * WEIGHTS[middle])
+        if detour is not None and np.abs(values @ (line + detour) - x).max() <= tolerance:
+            best, low = BSpline(knots, line + detour, DEGREE), middle + 1
         else:
             high = middle
     return best
 
 
-def _smoothed(
-    knots: Array, values: csr_array, roughness: csr_array, x: Array, weight: float
-) -> BSpline | None:
-    """The minimiser for one weight, with its first and last coefficient held at the end points."""
-    normal = values.T @ values + weight * roughness
-    ends = [0, len(x) - 1]
-    right = (values.T @ x - normal[:, ends] @ x[ends])[1:-1]
-    inner = normal[1:-1, 1:-1]
-    banded = np.zeros((DEGREE + 1, inner.shape[0]))
+def _smoothed(values: csr_array, roughness: csr_array, x: Array, weight: float) -> Array | None:
+    """Coefficients of the minimiser for one weight, the first and the last held at zero, shape (M, n)."""
+    normal = (values.T @ values + weight * roughness)[1:-1, 1:-1]
+    banded = np.zeros((DEGREE + 1, normal.shape[0]))
     for offset in range(DEGREE + 1):
-        diagonal = inner.diagonal(offset)
+        diagonal = normal.diagonal(offset)
         banded[offset, : len(diagonal)] = diagonal
     try:
-        coefficients = solveh_banded(banded, right, lower=True)
+        inner = solveh_banded(banded, (values.T @ x)[1:-1], lower=True)
     except LinAlgError:  # The weight is so large that the points no longer count within rounding.
         return None
-    return BSpline(knots, np.vstack([x[0], coefficients, x[-1]]), DEGREE)
+    return np.pad(inner, ((1, 1), (0, 0)))
+
+
+def _middles(knots: Array) -> Array:
+    """The coefficients of the spline ``p(u) = u``: means of ``DEGREE`` successive knots."""
+    return np.convolve(knots[1:-1], np.full(DEGREE, 1 / DEGREE), mode="valid")
 
 
 def _roughness(knots: Array) -> csr_array:

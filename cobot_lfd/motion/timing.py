@@ -27,8 +27,8 @@ METHODS: dict[TimingMethod, Callable[[JointPath, JointLimits], TimeLaw]] = {
 def time_path(path: JointPath, limits: JointLimits, *, method: TimingMethod = "simple") -> JointTrajectory:
     """Follow the path from rest to rest, within velocity, acceleration and jerk limits of every joint.
 
-    The arm stays on the path by construction: ``q(t) = p(s(t))``. What is returned has passed ``check_limits``.
-    A path that goes nowhere gives a trajectory of duration 0.
+    The arm stays on the path by construction: ``q(t) = p(s(t))``. The result has passed ``check_limits``. A
+    path that goes nowhere gives a trajectory of duration 0.
 
     Args:
         path: Where the joints go.

@@ -27,7 +27,7 @@ from cobot_lfd.motion.timing_warp import DEGREE, Warp, full_knots, gauss_points
 CHECKS = np.array([1e-6, 1 / 3, 2 / 3, 1 - 1e-6])
 """Where limits are kept between two breaks. The jerk steps at breaks: both sides of each are among them."""
 
-SLOWEST = 1e-4
+SLOWEST = 1e-6
 """Smallest c / c0, which keeps c positive."""
 
 SquaredRate = Callable[[Array], Array]

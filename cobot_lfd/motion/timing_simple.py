@@ -34,10 +34,17 @@ def simple_law(path: JointPath, limits: JointLimits) -> TimeLaw:
 def _candidates(path: JointPath, limits: JointLimits) -> Array:
     """Limits on s', s'' and s''' that keep the joints within theirs, shape (number of candidates, 3)."""
     p1, p2, p3 = (np.abs(path(np.linspace(0.0, 1.0, 2001), order)) for order in (1, 2, 3))
-    fastest = min(_largest(limits.velocity, p1), np.sqrt(_largest(limits.acceleration, p2)))
+    fastest = min(
+        _largest(limits.velocity, p1),
+        np.sqrt(_largest(limits.acceleration, p2)),
+        np.cbrt(_largest(limits.jerk, p3)),
+    )
     candidates = []
     for v in fastest * SPEED_SHARES:
-        most = _largest(limits.acceleration - p2 * v**2, p1)
+        most = min(
+            _largest(limits.acceleration - p2 * v**2, p1),
+            _largest(limits.jerk - p3 * v**3, 3 * p2 * v),
+        )
         for a in most * np.array(ACCELERATION_SHARES):
             j = _largest(limits.jerk - p3 * v**3 - 3 * p2 * v * a, p1)
             if a > 0 and j > 0:

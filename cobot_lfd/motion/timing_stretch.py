@@ -36,8 +36,8 @@ def stretch_to_limits(path: JointPath, law: TimeLaw, limits: JointLimits) -> Tim
     """The law stretched (or compressed) so that the largest ratio of a derivative to its limit is 1."""
     times = np.linspace(0.0, law.duration, N_SAMPLES)
     coarse = local_stretch(path, law, limits, times)
-    peak = np.clip(np.argmax(coarse[:N_SAMPLES]) + np.array([-1, 1]), 0, N_SAMPLES - 1)
-    fine = local_stretch(path, law, limits, np.linspace(*times[peak], N_AT_PEAK))
+    peak = times[int(np.argmax(coarse[:N_SAMPLES]))] + times[1] * np.linspace(-1.0, 1.0, N_AT_PEAK)
+    fine = local_stretch(path, law, limits, peak)
     return law.stretched((1 + MARGIN) * float(max(coarse.max(), fine.max())))
 
 

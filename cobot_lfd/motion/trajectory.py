@@ -1,10 +1,10 @@
 """A joint trajectory: where the joints are at each time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from cobot_lfd.arrays import Array, frozen_array
 from cobot_lfd.motion.path import JointPath
@@ -137,14 +137,27 @@ class JointTrajectory:
     def sample(self, times: ArrayLike) -> JointSamples:
         """The trajectory at ``times`` [s], shape (K,), exactly; before and after it, the arm rests."""
         times = frozen_array(np.atleast_1d(np.asarray(times, dtype=np.float64)), "times", (None,))
-        starts = self.section_times
-        index = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, len(self.sections) - 1)
         states = np.zeros((3, len(times), self.n_joints))
-        for i in np.unique(index):
-            chosen = index == i
-            part = self.sections[i].sample(times[chosen] - starts[i])
+        for chosen, section, inner in self._parts(times):
+            part = section.sample(inner)
             states[:, chosen] = part.positions, part.velocities, part.accelerations
         return JointSamples(times, *states)
+
+    def positions(self, times: ArrayLike) -> Array:
+        """The joint positions alone [rad], shape (K, n), at ``times`` [s], shape (K,)."""
+        times = np.asarray(times, dtype=np.float64)
+        positions = np.zeros((len(times), self.n_joints))
+        for chosen, section, inner in self._parts(times):
+            positions[chosen] = section.path(section.law(inner))
+        return positions
+
+    def _parts(self, times: Array) -> Iterator[tuple[NDArray[np.bool_], TimedPath, Array]]:
+        """Which of the times fall into a section, the section, and the times counted from its start."""
+        starts = self.section_times
+        index = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, len(self.sections) - 1)
+        for i in np.unique(index):
+            chosen = index == i
+            yield chosen, self.sections[i], times[chosen] - starts[i]
 
     def every(self, period: float) -> JointSamples:
         """The trajectory at 0, period, 2 period, ... [s] up to the first time at which it rests at its end.
