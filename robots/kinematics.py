@@ -36,7 +36,7 @@ class JointLimitError(KinematicsError):
 class Kinematics:
     """Forward and inverse kinematics of an arm.
 
-    The steps of the inverse kinematics are Gauss-Newton steps on the pose error, with a motion towards the
+    The steps of the inverse kinematics are Levenberg-Marquardt steps on the pose error, with a motion to the
     home posture in the null space of the Jacobian, so that a redundant arm's elbow stays where it belongs.
     PyBullet's own solver lets the elbow drift along a path and says nothing when it fails.
     """
@@ -112,9 +112,13 @@ class Kinematics:
         return np.array(path)
 
     def _step(self, positions: Array, error: Array) -> Array:
-        """A damped Gauss-Newton step on the pose error, and towards home where that is free."""
+        """A damped step on the pose error, and towards home where that is free.
+
+        The damping grows with the squared error, which keeps the steps sane at the edge of the arm's reach
+        (Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, 2011).
+        """
         U, sigma, Vt = np.linalg.svd(self._body.jacobian(positions), full_matrices=False)
-        task = Vt.T @ (sigma / (sigma**2 + _DAMPING) * (U.T @ error))
+        task = Vt.T @ (sigma / (sigma**2 + _DAMPING + error @ error) * (U.T @ error))
         posture = _POSTURE_GAIN * (self._home - positions)
         return np.asarray(task + posture - Vt.T @ (Vt @ posture))
 

@@ -208,6 +208,7 @@ _SHOWN = {
     "camera.png": "what the camera saw, with the detected frames and the generated path",
     "path.png": "the demonstrations, and the generated path with its covariance",
     "run.webm": "the arm doing it",
+    "evaluation/summary.json": "how often it went well",
     "evaluation/results.jsonl": "a line per evaluated episode",
 }
 
@@ -218,13 +219,15 @@ def _illustrate(
     """Draw what is asked for and can be drawn; returns the files."""
     files = []
     path = episode.path
+    models = object_models(bench.scene)
     if picture:
         drawn = draw_detections(
             episode.view.picture,
             bench.scene.camera.camera,
             episode.view.detections,
-            models=object_models(bench.scene),
+            models=models,
             path=None if path is None else path.mean,
+            path_z=next(model.z for model in models if model.name == bench.scene.task.pick),
         )
         files.append(save_picture(drawn, picture))
     if plot and path is not None:

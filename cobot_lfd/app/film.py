@@ -10,10 +10,10 @@ from scenes import CameraDescription, World
 
 _FRAMES_PER_SECOND = 20
 _VISITOR = CameraDescription(
-    position=(1.35, -0.85, 0.85),
-    target=(0.38, 0.0, 0.15),
+    position=(1.45, -0.95, 0.85),
+    target=(0.33, 0.0, 0.26),
     up=(0.0, 0.0, 1.0),
-    field_of_view_deg=38.0,
+    field_of_view_deg=36.0,
     width=640,
     height=480,
 )
@@ -26,6 +26,7 @@ class Film:
         self._world = world
         self._writer = writer
         self._next = world.time
+        self()
 
     def __call__(self) -> None:
         """Take a frame where one is due."""

@@ -11,7 +11,7 @@ from robots import Kinematics, RobotDescription
 from scenes import Task
 
 _STEP = 0.004  # [m] between neighbouring poses of a straight line
-_GRIP_TIME = 0.6  # [s] that the fingers are given to close or to open
+_SETTLING_TIME = 0.2  # [s] that the gripper is given beyond the time in which its fingers can close
 # A cobot beside a person moves well below what its joints could do.
 _VELOCITY_SHARE, _ACCELERATION_SHARE, _JERK_SHARE = 0.5, 0.2, 0.1
 
@@ -57,6 +57,7 @@ def plan_motion(
     )
     start, goal = path[0], path[-1]
     open_, closed = robot.gripper.maximum_opening, 0.0
+    grip_time = open_ / robot.gripper.speed + _SETTLING_TIME
     parked = np.array(robot.parked)
 
     def line(joints: Array, corners: list[list[float]]) -> Array:
@@ -72,11 +73,11 @@ def plan_motion(
     return (
         Stage("approach", move(parked, down[0], limits), open_, False),
         Stage("descend", _timed(down, limits), open_, False),
-        Stage("grasp", JointTrajectory.hold(down[-1], _GRIP_TIME), closed, True),
+        Stage("grasp", JointTrajectory.hold(down[-1], grip_time), closed, True),
         Stage("lift", _timed(up, limits), closed, True),
         Stage("carry", _timed(carry, limits), closed, True),
         Stage("lower", _timed(lower, limits), closed, True),
-        Stage("release", JointTrajectory.hold(lower[-1], _GRIP_TIME), open_, False),
+        Stage("release", JointTrajectory.hold(lower[-1], grip_time), open_, False),
         Stage("retreat", _timed(leave, limits), open_, False),
         Stage("return", move(leave[-1], parked, limits), open_, False),
     )

@@ -18,7 +18,7 @@ from scenes import Task
 _SPEED = 0.25  # [m/s] mean speed of a person's hand on the way to the part and away from it
 _SHORTEST = 0.8  # [s] that even the shortest movement takes
 _PAUSE = 0.3  # [s] for which the hand rests after each movement
-_GRIP = 0.7  # [s] that the gripper is given to close or open
+_GRIP = 1.0  # [s] that the hand gives the gripper to close or open
 _WANDER = 0.25  # [s] over which the hand's slow wander is correlated
 
 
