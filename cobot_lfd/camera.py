@@ -1,6 +1,6 @@
 """A pinhole camera: where it stands, and how points in the world land in its picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,12 +26,16 @@ class Camera:
     height: int
     matrix: Array
     world_from_camera: Pose
+    _pixels_from_world: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Copy and check."""
         object.__setattr__(self, "matrix", frozen_array(self.matrix, "matrix", (3, 3)))
         if self.width < 1 or self.height < 1:
             raise ValueError(f"the picture is {self.width} x {self.height} px; both must be at least 1.")
+        camera_from_world = self.world_from_camera.inverse()
+        extrinsic = np.column_stack([camera_from_world.rotation, camera_from_world.position])
+        object.__setattr__(self, "_pixels_from_world", self.matrix @ extrinsic)
 
     @classmethod
     def looking_at(
@@ -73,7 +77,8 @@ class Camera:
         Returns:
             Pixel positions (u, v) [px], shape (..., 2).
         """
-        homogeneous = self.world_from_camera.inverse().apply(points) @ self.matrix.T
+        points = np.asarray(points, dtype=np.float64)
+        homogeneous = points @ self._pixels_from_world[:, :3].T + self._pixels_from_world[:, 3]
         return np.asarray(homogeneous[..., :2] / homogeneous[..., 2:])
 
     def to_plane(self, pixels: ArrayLike, z: float) -> Array:

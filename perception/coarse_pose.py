@@ -11,6 +11,7 @@ from perception.silhouette import corners_in_world
 
 _ANGLE_STEP = np.deg2rad(5.0)
 _N_DIRECTIONS = 48
+_N_TIMES_WORSE = 2.0  # A pose that fits this many times worse than the best one is not worth a try.
 
 
 def guess_poses(region: Region, model: ObjectModel, camera: Camera, scale: int, n: int) -> list[Frame]:
@@ -36,7 +37,9 @@ def guess_poses(region: Region, model: ObjectModel, camera: Camera, scale: int, 
     shifts = excess @ np.linalg.pinv(normals).T
     misfits = np.linalg.norm(excess - shifts @ normals.T, axis=1)
     frames = []
-    for i in _local_minima(misfits)[:n]:
+    lowest = _local_minima(misfits)
+    likely = lowest[misfits[lowest] < _N_TIMES_WORSE * misfits[lowest[0]]]
+    for i in likely[:n]:
         moved = camera.to_plane(camera.project([*middle, model.z]) + shifts[i], model.z)
         frames.append(Frame(moved, float(angles[i])))
     return frames

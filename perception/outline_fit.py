@@ -3,21 +3,26 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.edges import TableShare, measure_edges
+from perception.edge_noise import stair_variance, weighted_normal_equations
+from perception.edges import EdgeOffsets, measure_edges
+from perception.mixture import Mixture
 from perception.picture import Picture
 from perception.silhouette import Contour, silhouette_hull, visible_contour
 
-_FIRST_REACH, _LAST_REACH = (
-    8.0,
-    4.0,
-)  # How far from the outline edges are looked for, at first and at last [px].
-_N_ITERATIONS = 6
+# How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
+# start; near at last, so that shadows and other edges nearby do not disturb.
+_REACHES = (8.0, 4.0, 2.5)
+_SMALLEST_REACH = 2.0
 _FEWEST_POINTS = 12
+_LEAST_WEIGHT = 0.2  # Of an edge, by Tukey's biweight, so that it counts as part of the outline.
+_LEAST_SCALE = 0.25  # The spread that edges are allowed to have in any case [px].
+_RIDGE = 1e-3 * np.eye(3)  # Keeps a direction that no edge tells anything about where it is.
 _STEP = 1e-5  # For the derivative of the projection [m].
 
 
@@ -38,40 +43,70 @@ class OutlineFit:
     residual: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Measurement:
+    """An outline at a pose, how it depends on the pose, and the edges that were found along it."""
+
+    frame: Frame
+    contour: Contour
+    jacobian: Array
+    edges: EdgeOffsets
+
+
 def fit_outline(
-    picture: Picture, camera: Camera, model: ObjectModel, share: TableShare, start: Frame
+    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, start: Frame
 ) -> OutlineFit | None:
-    """Move an object's outline until it lies on the edges in the picture (Gauss-Newton, Tukey's weights).
+    """Move an object's outline until it lies on the edges in the picture.
+
+    Gauss-Newton with Tukey's weights brings it there; a last step weighs the edges by how their errors hang
+    together, which also gives the covariance.
 
     Args:
         picture: The picture.
         camera: The camera that took it.
         model: The object.
-        share: Tells the table from the object.
+        mixture: Tells the object from the table.
         start: Where the object is, to a few pixels.
 
     Returns:
         The fit; None if there are too few edges near the start.
     """
+    width = float(np.ptp(silhouette_hull(model, start, camera), axis=0).min())
     frame = start
-    widest = 0.3 * float(np.ptp(silhouette_hull(model, start, camera), axis=0).min())
-    for reach in np.minimum(np.linspace(_FIRST_REACH, _LAST_REACH, _N_ITERATIONS), max(widest, 2.0)):
-        contour = visible_contour(model, frame, camera)
-        edges = measure_edges(picture, share, contour, float(reach))
-        valid = edges.valid
-        if valid.sum() < _FEWEST_POINTS:
+    for reach in np.minimum(_REACHES, max(0.3 * width, _SMALLEST_REACH)):
+        seen = _measure(picture, camera, model, mixture, frame, float(reach))
+        if seen.edges.valid.sum() < _FEWEST_POINTS:
             return None
-        jacobian = _jacobian(contour, frame, camera)[valid]
-        step, weights = _robust_step(jacobian, edges.offsets[valid])
-        frame = Frame(frame.position + step[:2], frame.angle + step[2])
-    residuals = edges.offsets[valid] - jacobian @ step
-    near = weights > 0.0
-    return OutlineFit(
-        frame,
-        _covariance(jacobian[near], residuals[near]),
-        found=float(near.sum() / len(valid)),
-        residual=float(np.sqrt(np.mean(residuals[near] ** 2))),
+        frame = _moved(frame, _robust_step(seen)[0])
+    seen = _measure(picture, camera, model, mixture, frame, float(reach))
+    if seen.edges.valid.sum() < _FEWEST_POINTS:
+        return None
+    return _finish(seen)
+
+
+def _measure(
+    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, frame: Frame, reach: float
+) -> _Measurement:
+    contour = visible_contour(model, frame, camera)
+    edges = measure_edges(picture, mixture, contour, reach)
+    return _Measurement(frame, contour, _jacobian(contour, frame, camera), edges)
+
+
+def _finish(seen: _Measurement) -> OutlineFit:
+    """The last step: the edges that belong to the outline, weighted by their noise."""
+    step, chosen = _robust_step(seen)
+    jacobian, offsets = seen.jacobian[chosen], seen.edges.offsets[chosen]
+    residual = float(np.sqrt(np.mean((offsets - jacobian @ step) ** 2)))
+    stairs = stair_variance(seen.edges.mixed[chosen])
+    information, pull = weighted_normal_equations(
+        seen.contour[chosen], jacobian, offsets, stairs=stairs, white=max(residual**2 - stairs, 0.0)
     )
+    covariance = np.asarray(np.linalg.inv(information + _RIDGE), dtype=np.float64)
+    return OutlineFit(_moved(seen.frame, covariance @ pull), covariance, float(chosen.mean()), residual)
+
+
+def _moved(frame: Frame, step: Array) -> Frame:
+    return Frame(frame.position + step[:2], frame.angle + step[2])
 
 
 def _jacobian(contour: Contour, frame: Frame, camera: Camera) -> Array:
@@ -85,18 +120,17 @@ def _jacobian(contour: Contour, frame: Frame, camera: Camera) -> Array:
     return np.column_stack([by_x, by_y, x * by_y - y * by_x])
 
 
-def _robust_step(jacobian: Array, offsets: Array) -> tuple[Array, Array]:
-    """The step that brings the outline to the edges, and the weight of each edge (Tukey's biweight)."""
+def _robust_step(seen: _Measurement) -> tuple[Array, NDArray[np.bool_]]:
+    """The step that brings the outline to the edges (Tukey's biweight), and which edges belong to it."""
+    valid = seen.edges.valid
+    jacobian, offsets = seen.jacobian[valid], seen.edges.offsets[valid]
     weights = np.ones(len(offsets))
-    for _ in range(4):
+    for _ in range(3):
         weighted = jacobian * weights[:, None]
-        step = np.linalg.lstsq(weighted.T @ jacobian, weighted.T @ offsets, rcond=None)[0]
+        step = np.linalg.solve(weighted.T @ jacobian + _RIDGE, weighted.T @ offsets)
         residuals = offsets - jacobian @ step
-        scale = max(1.4826 * float(np.median(np.abs(residuals))), 0.25)
+        scale = max(1.4826 * float(np.median(np.abs(residuals))), _LEAST_SCALE)
         weights = np.clip(1.0 - (residuals / (4.685 * scale)) ** 2, 0.0, None) ** 2
-    return np.asarray(step, dtype=np.float64), weights
-
-
-def _covariance(jacobian: Array, residuals: Array) -> Array:
-    variance = float(np.mean(residuals**2))
-    return np.asarray(np.linalg.pinv(jacobian.T @ jacobian) * variance)
+    chosen = valid.copy()
+    chosen[valid] = weights > _LEAST_WEIGHT
+    return np.asarray(step, dtype=np.float64), chosen

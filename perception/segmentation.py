@@ -17,7 +17,11 @@ _LEAST_SHARE = (
     0.4  # Of the colour difference between table and object: from here on a pixel may be the object.
 )
 _MOST_DEVIATION = 0.6  # Of a pixel from the line between table and object, as a share of the difference.
+_EVERY = 5  # Pixels from one to the next where a part of them is enough.
 _N_NOISE = 5.0  # Standard deviations of the table's colour that never count as an object.
+
+_PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
+"""Two axes of the plane in which the shares of red, green and blue lie, shape (3, 2)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,35 +69,35 @@ def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segm
         models: The objects.
         scale: Side of the squares of pixels that are averaged first [px].
     """
-    height, width = picture.shape[:2]
-    size = (width // scale, height // scale)
-    small = cv2.resize(
-        picture[: size[1] * scale, : size[0] * scale], size, interpolation=cv2.INTER_AREA
-    ).astype(np.float64)
-    table = table_colour(small)
+    height, width = picture.shape[0] // scale, picture.shape[1] // scale
+    whole = picture[: height * scale, : width * scale]
+    small = cv2.resize(whole, (width, height), interpolation=cv2.INTER_AREA).astype(np.float64)
+    pixels = small.reshape(-1, 3)
+    table = table_colour(pixels[::_EVERY])
     if table is None:
         return None
-    labels = _label(small, table, models)
+    labels = _label(pixels, table, models).reshape(height, width)
     regions = tuple(_regions(labels == i, small, scale) for i in range(len(models)))
     return Segmentation(table, regions, scale)
 
 
-def _label(small: Array, table: Array, models: Sequence[ObjectModel]) -> Array:
-    """For each pixel the number of the object whose colour it has, -1 for none, shape (height, width)."""
-    difference = chromaticity(small) - chromaticity(table)
-    shares, deviations = [], []
-    for model in models:
-        expected = chromaticity(model.colour) - chromaticity(table)
-        share = difference @ expected / (expected @ expected)
-        noise = 1.4826 * float(np.median(np.abs(share)))
-        off_line = np.linalg.norm(difference - share[..., None] * expected, axis=-1) / np.linalg.norm(
-            expected
-        )
-        unlike = (share < max(_LEAST_SHARE, _N_NOISE * noise)) | (off_line > _MOST_DEVIATION * share)
-        shares.append(~unlike)
-        deviations.append(np.where(unlike, np.inf, off_line / np.maximum(share, 1e-9)))
-    nearest = np.argmin(deviations, axis=0)
-    return np.where(np.any(shares, axis=0), nearest, -1)
+def _label(pixels: Array, table: Array, models: Sequence[ObjectModel]) -> NDArray[np.int_]:
+    """For each pixel the number of the object whose colour it has, -1 for none, shape (n,)."""
+    difference = (chromaticity(pixels) - chromaticity(table)) @ _PLANE
+    best = np.full(len(pixels), _MOST_DEVIATION)
+    labels = np.full(len(pixels), -1)
+    for i, model in enumerate(models):
+        expected = (chromaticity(model.colour) - chromaticity(table)) @ _PLANE
+        expected /= expected @ expected
+        share = difference @ expected
+        noise = 1.4826 * float(np.median(np.abs(share[::_EVERY])))
+        foreground = np.flatnonzero(share > max(_LEAST_SHARE, _N_NOISE * noise))
+        across = np.abs(difference[foreground] @ [-expected[1], expected[0]])
+        deviation = across / share[foreground]
+        better = deviation < best[foreground]
+        best[foreground[better]] = deviation[better]
+        labels[foreground[better]] = i
+    return labels
 
 
 def _regions(mask: Array, small: Array, scale: int) -> tuple[Region, ...]:

@@ -9,7 +9,7 @@ from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
 from perception.coarse_pose import guess_poses
-from perception.edges import TableShare
+from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture, check_picture
 from perception.segmentation import Region, Segmentation, segment
@@ -73,8 +73,8 @@ def _detect_one(
             if region is regions[0]:
                 reason = _wrong_size(model, region, expected)
             continue
-        share = TableShare.between(segmentation.table, region.colour)
-        tried = (fit_outline(picture, camera, model, share, start) for start in starts)
+        mixture = Mixture.of(region.colour, segmentation.table)
+        tried = (fit_outline(picture, camera, model, mixture, start) for start in starts)
         fit = max((f for f in tried if f is not None), key=_quality, default=None)
         fault = _fault(model, region, fit)
         if fit is not None and fault is None:

@@ -11,9 +11,10 @@ from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
 
-_SPACING = 1.0  # Distance of the contour's points [px].
+_SPACING = 1.0  # Least distance of the contour's points [px].
+_MOST_POINTS = 600  # On all edges, seen and not seen; more cost time and tell little.
 _CORNER = 2.5  # Length left out at either end of an edge [px]: near a corner the other edge disturbs.
-_SUBPIXEL_BITS = 4  # OpenCV draws polygons with corners at multiples of 1/16 px.
+_ASIDE = 0.01  # Distance from an edge at which either side of it is judged [px].
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,11 +25,17 @@ class Contour:
         points: The points on the object, in the world [m], shape (n, 3).
         pixels: Where they land in the picture [px], shape (n, 2).
         normals: Unit vectors in the picture that point away from the object, shape (n, 2).
+        edges: Number of the straight edge that each point lies on, shape (n,).
     """
 
     points: Array
     pixels: Array
     normals: Array
+    edges: NDArray[np.int_]
+
+    def __getitem__(self, chosen: NDArray[np.bool_]) -> "Contour":
+        """Only the chosen points."""
+        return Contour(self.points[chosen], self.pixels[chosen], self.normals[chosen], self.edges[chosen])
 
 
 def corners_in_world(model: ObjectModel, frame: Frame) -> Array:
@@ -45,23 +52,20 @@ def silhouette_hull(model: ObjectModel, frame: Frame, camera: Camera) -> Array:
 
 
 def visible_contour(model: ObjectModel, frame: Frame, camera: Camera) -> Contour:
-    """Points on the border of an object's image, one per pixel, the corners left out.
+    """Points on the border of an object's image, at most one per pixel, the corners left out.
 
     Every edge of the prism between outline and foot is sampled; the points that have the object's image on
     one side only are on its border.
     """
     corners = corners_in_world(model, frame)
     starts, ends = _edges(len(model.outline))
-    points, directions = _sample_edges(corners[starts], corners[ends], camera)
-    if not len(points):
-        return Contour(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros((0, 2)))
+    points, directions, edges = _sample_edges(corners[starts], corners[ends], camera)
     pixels = camera.project(points)
     normals = np.column_stack([directions[:, 1], -directions[:, 0]])
-    inside = _Mask(model, corners, camera)
-    left, right = inside(pixels + 1.5 * normals), inside(pixels - 1.5 * normals)
+    seen = camera.project(corners)
+    left, right = (_covers(pixels + side * _ASIDE * normals, seen) for side in (1, -1))
     border = left != right
-    normals = np.where(left[:, None], -normals, normals)
-    return Contour(points[border], pixels[border], normals[border])
+    return Contour(points, pixels, np.where(left[:, None], -normals, normals), edges)[border]
 
 
 def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
@@ -70,42 +74,34 @@ def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     return np.concatenate([around, n + around, around]), np.concatenate([after, n + after, n + around])
 
 
-def _sample_edges(starts: Array, ends: Array, camera: Camera) -> tuple[Array, Array]:
-    """Points on edges [m], shape (n, 3), and the edges' directions in the picture there, shape (n, 2)."""
+def _sample_edges(starts: Array, ends: Array, camera: Camera) -> tuple[Array, Array, NDArray[np.int_]]:
+    """Points on edges [m], (n, 3), the edges' directions in the picture, (n, 2), and their numbers, (n,)."""
     along = camera.project(ends) - camera.project(starts)
     lengths = np.linalg.norm(along, axis=1)
-    points, directions = [], []
-    for start, end, step, length in zip(starts, ends, along, lengths, strict=True):
-        count = int((length - 2 * _CORNER) / _SPACING)
-        if count < 1:
-            continue
-        shares = 0.5 + (np.arange(count) - 0.5 * (count - 1)) * _SPACING / length
-        points.append(start + shares[:, None] * (end - start))
-        directions.append(np.tile(step / length, (count, 1)))
-    if not points:
-        return np.zeros((0, 3)), np.zeros((0, 2))
-    return np.vstack(points), np.vstack(directions)
+    spacing = max(_SPACING, lengths.sum() / _MOST_POINTS)
+    counts = np.maximum((lengths - 2 * _CORNER) / spacing, 0.0).astype(int)
+    edge = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
+    shares = 0.5 + (place - 0.5 * (counts[edge] - 1)) * spacing / lengths[edge]
+    points = starts[edge] + shares[:, None] * (ends - starts)[edge]
+    return points, (along / np.maximum(lengths, 1e-9)[:, None])[edge], edge
 
 
-class _Mask:
-    """Tells which pixels an object's image covers."""
+def _covers(pixels: Array, corners: Array) -> NDArray[np.bool_]:
+    """Whether a prism's image, its corners [px] of shape (2 m, 2), covers places in the picture, shape (n,).
 
-    def __init__(self, model: ObjectModel, corners: Array, camera: Camera) -> None:
-        n = len(model.outline)
-        pixels = camera.project(corners)
-        self._origin = np.floor(pixels.min(axis=0)).astype(int) - 3
-        width, height = np.ceil(pixels.max(axis=0)).astype(int) + 4 - self._origin
-        self._mask = np.zeros((height, width), dtype=np.uint8)
-        scaled = np.rint((pixels - self._origin) * 2**_SUBPIXEL_BITS).astype(np.int32)
-        after = np.roll(np.arange(n), -1)
-        walls = [scaled[[i, j, n + j, n + i]] for i, j in enumerate(after)]
-        for polygon in [scaled[:n], scaled[n:], *walls]:
-            cv2.fillPoly(self._mask, [polygon], color=1, shift=_SUBPIXEL_BITS)
-
-    def __call__(self, pixels: Array) -> NDArray[np.bool_]:
-        """Whether each pixel is covered, shape (n,)."""
-        columns, rows = (np.rint(pixels).astype(int) - self._origin).T
-        height, width = self._mask.shape
-        within = (columns >= 0) & (rows >= 0) & (columns < width) & (rows < height)
-        covered = self._mask[np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)] > 0
-        return np.asarray(within & covered)
+    A place is covered by a polygon if the line from it to the right crosses the polygon's edges an odd number
+    of times. The polygons are the top, the foot and the walls.
+    """
+    n = len(corners) // 2
+    after = np.roll(np.arange(n), -1)
+    walls = np.column_stack([np.arange(n), after, n + after, n + np.arange(n)])
+    starts = np.concatenate([np.arange(2 * n), walls.ravel()])
+    ends = np.concatenate([after, n + after, np.roll(walls, -1, axis=1).ravel()])
+    polygon = np.concatenate([np.repeat([0, 1], n), np.repeat(np.arange(2, 2 + n), 4)])
+    (x0, y0), (x1, y1) = corners[starts].T, corners[ends].T
+    x, y = pixels.T[..., None]
+    slope = (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
+    crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
+    n_crossed = crosses.astype(np.float64) @ np.eye(2 + n)[polygon]
+    return np.asarray((n_crossed % 2 == 1).any(axis=1))

@@ -54,13 +54,19 @@ def take_picture(client: BulletClient, seen: CameraDescription, light: Light, re
         Red, green, blue, shape (height, width, 3).
     """
     camera = seen.camera
-    shifts = (np.arange(seen.samples) + 0.5) / seen.samples - 0.5
-    shots = [
-        _shoot(client, camera, np.array([x, y]) + _GRID_OFFSET[renderer], light, renderer)
-        for y in shifts
-        for x in shifts
-    ]
+    shifts = sample_pattern(seen.samples) + _GRID_OFFSET[renderer]
+    shots = [_shoot(client, camera, shift, light, renderer) for shift in shifts]
     return shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
+
+
+def sample_pattern(n: int) -> Array:
+    """Where a pixel is sampled, measured from its centre [px], shape (n, 2).
+
+    No two of the points share a row or a column, so that an edge along either has n steps across a pixel; the
+    order of the multiples of the golden ratio spreads them.
+    """
+    ranks = np.argsort(np.argsort(np.mod(np.arange(n) * (np.sqrt(5) - 1) / 2, 1.0)))
+    return (np.column_stack([np.arange(n), ranks]) + 0.5) / n - 0.5
 
 
 def _shoot(client: BulletClient, camera: Camera, shift: Array, light: Light, renderer: Renderer) -> Picture:

@@ -21,7 +21,7 @@ class CameraDescription(DescriptionModel):
         field_of_view_deg: Vertical opening angle [degrees].
         width: Picture width [px].
         height: Picture height [px].
-        samples: Rays along each side of a pixel that are averaged; 1 leaves the edges jagged.
+        samples: Points of a pixel that are averaged, a picture each; 1 leaves the edges jagged.
     """
 
     position: Vector
@@ -30,7 +30,7 @@ class CameraDescription(DescriptionModel):
     field_of_view_deg: Annotated[float, Field(gt=0.0, lt=180.0)]
     width: Annotated[int, Field(ge=16, le=4096)] = 640
     height: Annotated[int, Field(ge=16, le=4096)] = 480
-    samples: Annotated[int, Field(ge=1, le=8)] = 1
+    samples: Annotated[int, Field(ge=1, le=16)] = 1
 
     @model_validator(mode="after")
     def _looks_somewhere(self) -> "CameraDescription":
