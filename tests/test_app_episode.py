@@ -66,7 +66,7 @@ def test_the_pipeline_believes_the_picture_and_not_the_simulator(
         wrong_picture = other.take_picture()
     monkeypatch.setattr(World, "take_picture", lambda *_, **__: wrong_picture)
     verdict = run_episode(bench, SEED).result.verdict
-    assert verdict.outcome is Outcome.GRASP_FAILED
+    assert verdict.outcome in (Outcome.GRASP_FAILED, Outcome.GRASP_LOST)
 
 
 def test_what_the_camera_sees_is_where_it_says(episode: EpisodeRun) -> None:
