@@ -5,19 +5,23 @@ from collections.abc import Callable, Sequence
 
 from tyro.extras import subcommand_cli_from_dict
 
-from cobot_lfd.app import commands
+from cobot_lfd.app.commands.demo import demo
+from cobot_lfd.app.commands.evaluate import evaluate
+from cobot_lfd.app.commands.exit_codes import FAILED, INTERRUPTED
+from cobot_lfd.app.commands.fit import fit
+from cobot_lfd.app.commands.listing import robots, scenes
+from cobot_lfd.app.commands.record import record
+from cobot_lfd.app.commands.run import run
 from cobot_lfd.errors import CobotError
 
-FAILED, INTERRUPTED = 2, 130
-
 _COMMANDS: dict[str, Callable[..., int]] = {
-    "demo": commands.demo,
-    "record": commands.record,
-    "fit": commands.fit,
-    "run": commands.run,
-    "evaluate": commands.evaluate,
-    "scenes": commands.scenes,
-    "robots": commands.robots,
+    "demo": demo,
+    "record": record,
+    "fit": fit,
+    "run": run,
+    "evaluate": evaluate,
+    "scenes": scenes,
+    "robots": robots,
 }
 
 

@@ -1,0 +1,13 @@
+"""Checks of option values that several commands share."""
+
+from cobot_lfd.errors import CobotError
+
+
+def require_positive(option: str, value: int) -> None:
+    """Refuse an option that must be at least 1.
+
+    Raises:
+        CobotError: If ``value`` is less than 1.
+    """
+    if value < 1:
+        raise CobotError(f"--{option} is {value}; it must be at least 1.")

@@ -1,0 +1,73 @@
+"""cobot-lfd run: one new scene, from the picture to the checked success."""
+
+from contextlib import nullcontext
+from pathlib import Path
+
+from tyro.conf import Positional
+
+from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
+from cobot_lfd.app.draw import draw_detections, save_picture
+from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
+from cobot_lfd.app.evaluate import Job, bench_for
+from cobot_lfd.app.film import filming
+from cobot_lfd.app.plot import plot_model
+from cobot_lfd.app.store import load_demonstrations
+from scenes import object_models
+
+
+def run(
+    model: Positional[Path],
+    *,
+    scene: str,
+    robot: str = "panda",
+    seed: int = 0,
+    picture: Path | None = None,
+    plot: Path | None = None,
+    demos: Path | None = None,
+    video: Path | None = None,
+) -> int:
+    """Perform the task once, in the scene that the seed lays out.
+
+    Args:
+        model: File of the model.
+        scene: Name of the scene.
+        robot: Name of the robot.
+        seed: Decides the scene's layout.
+        picture: File (.png) for what the camera saw, with the detected frames and the path drawn on it.
+        plot: File (.png, .svg or .pdf) for a plot of the demonstrations and the path with its covariance.
+        demos: Folder of the demonstrations that are to be in the plot.
+        video: File (.webm) for a video of the arm.
+    """
+    bench = bench_for(Job(scene, robot, model))
+    with filming(video) if video else nullcontext() as film:
+        episode = run_episode(bench, seed, film=film)
+    print(f"seed {seed}: {episode.result.verdict.sentence}")
+    for file in _illustrate(bench, episode, picture=picture, plot=plot, demos=demos):
+        print(f"  {file}")
+    if video:
+        print(f"  {video}")
+    return DONE if episode.result.verdict.succeeded else NOT_ALL_SUCCEEDED
+
+
+def _illustrate(
+    bench: Bench, episode: EpisodeRun, *, picture: Path | None, plot: Path | None, demos: Path | None
+) -> list[Path]:
+    """Draw what is asked for and can be drawn; returns the files."""
+    files = []
+    path = episode.path
+    models = object_models(bench.scene)
+    if picture:
+        drawn = draw_detections(
+            episode.view.picture,
+            bench.scene.camera.camera,
+            episode.view.detections,
+            models=models,
+            path=None if path is None else path.mean,
+            path_z=next(model.z for model in models if model.name == bench.scene.task.pick),
+        )
+        files.append(save_picture(drawn, picture))
+    if plot and path is not None:
+        demonstrations = load_demonstrations(demos) if demos else []
+        frames = {name: episode.view.frames[name] for name in bench.model.frame_kinds}
+        files.append(plot_model(demonstrations, frames, path, file=plot, kinds=bench.model.frame_kinds))
+    return files
