@@ -32,7 +32,8 @@ class View:
 
     def find(self, name: str) -> Detection | NotSeen:
         """The detection of an object, or why there is none."""
-        found = {item.name: item for item in (*self.detections, *self.missing)}
+        found: dict[str, Detection | NotSeen] = {item.name: item for item in self.detections}
+        found |= {item.name: item for item in self.missing}
         return found.get(name) or NotSeen(name, "the scene has no object of this name")
 
 
