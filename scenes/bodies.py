@@ -23,18 +23,30 @@ def add_table(client: BulletClient, table: Table) -> int:
 
 def add_object(client: BulletClient, item: ObjectDescription, frame: Frame) -> int:
     """Add an object that stands on the table at a frame; returns its body number."""
-    standing = Pose.from_rpy([*frame.position, 0.0], [0.0, 0.0, frame.angle])
-    body = _add_blocks(client, blocks_of(item), standing, mass=item.mass, colour=item.colour)
+    body = _add_blocks(client, blocks_of(item), _standing(frame), mass=item.mass, colour=item.colour)
     client.changeDynamics(
         body, -1, lateralFriction=item.friction, spinningFriction=item.spinning_friction, restitution=0.0
     )
     return body
 
 
+def place_object(client: BulletClient, body: int, item: ObjectDescription, frame: Frame) -> None:
+    """Put an object on the table at a frame, at rest."""
+    pose = _standing(frame)
+    centre = pose.apply(_centre_of_mass(blocks_of(item)))
+    client.resetBasePositionAndOrientation(body, centre.tolist(), pose.quaternion.tolist())
+    client.resetBaseVelocity(body, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+
+
 def object_pose(client: BulletClient, body: int, item: ObjectDescription) -> Pose:
     """Where an object's frame really is, the middle of its foot."""
     world_from_centre = Pose.from_quaternion(*client.getBasePositionAndOrientation(body))
     return world_from_centre @ Pose(-_centre_of_mass(blocks_of(item)), np.eye(3))
+
+
+def _standing(frame: Frame) -> Pose:
+    """The pose of an object that stands on the table."""
+    return Pose.from_rpy([*frame.position, 0.0], [0.0, 0.0, frame.angle])
 
 
 def _add_blocks(

@@ -12,7 +12,8 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.errors import CobotError
 from cobot_lfd.quiet import quiet_output
-from scenes.view import CameraDescription, Light
+from scenes.imperfections import ideal_camera, on_sensor, through_lens
+from scenes.view import CameraDescription, Lens, Light, Sensor
 
 Picture = NDArray[np.uint8]
 """Red, green, blue, shape (height, width, 3)."""
@@ -22,6 +23,8 @@ Renderer = Literal["tiny", "egl"]
 
 # Where a renderer samples a pixel, measured from the pixel's centre [px]; found by measuring, held by a test.
 _GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
+
+_LARGEST_EGL = (1024, 768)  # Larger pictures it only magnifies [px].
 
 _NEAR, _FAR = 0.05, 10.0  # What is nearer to or farther from the camera is not drawn [m].
 
@@ -41,7 +44,13 @@ def load_renderer(client: BulletClient, renderer: Renderer) -> int | None:
     return int(plugin)
 
 
-def take_picture(client: BulletClient, seen: CameraDescription, light: Light, renderer: Renderer) -> Picture:
+def take_picture(
+    client: BulletClient,
+    seen: CameraDescription,
+    light: Light,
+    renderer: Renderer,
+    generator: np.random.Generator,
+) -> Picture:
     """What a camera sees now.
 
     Args:
@@ -49,14 +58,27 @@ def take_picture(client: BulletClient, seen: CameraDescription, light: Light, re
         seen: The camera.
         light: The light.
         renderer: What draws; it must be the one that the client was made ready for.
+        generator: Where the sensor's noise comes from.
 
     Returns:
         Red, green, blue, shape (height, width, 3).
+
+    Raises:
+        CobotError: If the picture is larger than the renderer can draw.
     """
     camera = seen.camera
+    ideal = ideal_camera(camera)
+    if renderer == "egl" and (ideal.width > _LARGEST_EGL[0] or ideal.height > _LARGEST_EGL[1]):
+        raise CobotError(
+            f"the renderer 'egl' draws at most {_LARGEST_EGL[0]} x {_LARGEST_EGL[1]} px; a picture of "
+            f"{ideal.width} x {ideal.height} px is needed. Use the renderer 'tiny', or a smaller picture."
+        )
     shifts = sample_pattern(seen.samples) + _GRID_OFFSET[renderer]
-    shots = [_shoot(client, camera, shift, light, renderer) for shift in shifts]
-    return shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
+    shots = [_shoot(client, ideal, shift, light, renderer) for shift in shifts]
+    picture = shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
+    if seen.lens == Lens() and seen.sensor == Sensor():
+        return picture
+    return on_sensor(through_lens(picture, ideal, camera, seen.lens), seen.sensor, generator)
 
 
 def sample_pattern(n: int) -> Array:

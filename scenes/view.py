@@ -1,5 +1,6 @@
 """How a scene is seen: its camera and its light."""
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -11,8 +12,34 @@ from scenes.quantities import Positive, Share, Vector
 from scenes.shapes import ColourValue
 
 
+class Lens(DescriptionModel):
+    """What the lens does to the picture; as it is here by default, nothing.
+
+    Attributes:
+        distortion: The coefficients k1, k2, p1, p2, k3 of ``cobot_lfd.lens``.
+        blur: Standard deviation of the spot that it makes of a point [px].
+    """
+
+    distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    blur: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
+
+
+class Sensor(DescriptionModel):
+    """What the sensor does to the picture; as it is here by default, nothing.
+
+    Attributes:
+        exposure: Factor of all brightness; what becomes too bright is cut.
+        colour_cast: Factors of red, green and blue.
+        noise: Standard deviation of the noise of each colour of each pixel, of 255.
+    """
+
+    exposure: Positive = 1.0
+    colour_cast: tuple[Positive, Positive, Positive] = (1.0, 1.0, 1.0)
+    noise: Annotated[float, Field(ge=0.0, le=255.0)] = 0.0
+
+
 class CameraDescription(DescriptionModel):
-    """A camera without distortion.
+    """A camera.
 
     Attributes:
         position: The camera's centre in the world [m].
@@ -21,6 +48,8 @@ class CameraDescription(DescriptionModel):
         field_of_view_deg: Vertical opening angle [degrees].
         width: Picture width [px].
         height: Picture height [px].
+        lens: What the lens does to the picture.
+        sensor: What the sensor does to the picture.
         samples: Points of a pixel that are averaged, a picture each; 1 leaves the edges jagged.
     """
 
@@ -30,6 +59,8 @@ class CameraDescription(DescriptionModel):
     field_of_view_deg: Annotated[float, Field(gt=0.0, lt=180.0)]
     width: Annotated[int, Field(ge=16, le=4096)] = 640
     height: Annotated[int, Field(ge=16, le=4096)] = 480
+    lens: Lens = Lens()
+    sensor: Sensor = Sensor()
     samples: Annotated[int, Field(ge=1, le=16)] = 1
 
     @model_validator(mode="after")
@@ -42,7 +73,7 @@ class CameraDescription(DescriptionModel):
     @property
     def camera(self) -> Camera:
         """The camera as a value that projects points."""
-        return Camera.looking_at(
+        ideal = Camera.looking_at(
             self.position,
             self.target,
             up=self.up,
@@ -50,6 +81,7 @@ class CameraDescription(DescriptionModel):
             width=self.width,
             height=self.height,
         )
+        return replace(ideal, distortion=np.array(self.lens.distortion))
 
 
 class Light(DescriptionModel):

@@ -12,11 +12,11 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame
 from cobot_lfd.pose import Pose
 from cobot_lfd.quiet import quiet_output
-from scenes.bodies import add_object, add_table, object_pose
+from scenes.bodies import add_object, add_table, object_pose, place_object
 from scenes.description import SceneDescription
 from scenes.placement import draw_placements
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
-from scenes.view import CameraDescription
+from scenes.view import CameraDescription, Light
 
 
 class World:
@@ -43,6 +43,7 @@ class World:
             self._plugin = load_renderer(self.client, renderer)
         self._renderer: Renderer = renderer
         self._n_steps = 0
+        self._sensor_noise = np.random.default_rng([seed, 1])
         _set_up_physics(self.client, description)
         self.table = add_table(self.client, description.table)
         placements = draw_placements(description, np.random.default_rng(seed))
@@ -77,19 +78,26 @@ class World:
         self.client.stepSimulation()
         self._n_steps += 1
 
-    def take_picture(self, *, camera: CameraDescription | None = None, covered: bool = False) -> Picture:
+    def take_picture(
+        self, *, covered: bool = False, camera: CameraDescription | None = None, light: Light | None = None
+    ) -> Picture:
         """What a camera sees now.
 
         Args:
-            camera: The camera; the scene's own by default.
             covered: Whether something covers the lens; the picture is then black.
+            camera: The camera; the scene's own by default.
+            light: The light; the scene's own by default.
 
         Returns:
             Red, green, blue, shape (height, width, 3).
         """
-        seen = camera or self.description.camera
-        picture = take_picture(self.client, seen, self.description.light, self._renderer)
+        camera, light = camera or self.description.camera, light or self.description.light
+        picture = take_picture(self.client, camera, light, self._renderer, self._sensor_noise)
         return np.zeros_like(picture) if covered else picture
+
+    def place(self, name: str, frame: Frame) -> None:
+        """Put an object somewhere else on the table, at rest, before a task begins."""
+        place_object(self.client, self.bodies[name], self.description.objects[name], frame)
 
     def true_poses(self) -> Mapping[str, Pose]:
         """Where the objects really are. Only for the success check, the scripted hand and tests."""
