@@ -8,8 +8,11 @@ from cobot_lfd.arrays import Array
 GROWTH = 2.2
 """How much longer each break interval near an end is than the one before it."""
 
-CLOSEST = 1e-7
-"""Breaks that lie closer together than this part of the whole count as one."""
+CLOSEST = 0.25
+"""A break that lies closer to a step than this part of its interval gives way to the step."""
+
+SHORTEST = 1e-5
+"""Part of the whole below which an interval is not cut: a jerk over less time drowns in rounding errors."""
 
 
 def graded_breaks(duration: float, n: int, finest: float) -> Array:
@@ -30,12 +33,18 @@ def graded_breaks(duration: float, n: int, finest: float) -> Array:
 
 
 def with_steps(breaks: Array, steps: Array) -> Array:
-    """The breaks joined by ``steps``, less those that nearly coincide with a step."""
-    apart = np.abs(breaks[:, None] - steps).min(axis=1) > CLOSEST * steps[-1]
+    """The breaks joined by ``steps``, less those that nearly coincide with a step.
+
+    Args:
+        breaks: Breaks from 0 to the end, increasing.
+        steps: Further breaks that have to stay where they are; 0 and the end are among them.
+    """
+    apart = np.abs(breaks[:, None] - steps).min(axis=1) > CLOSEST * np.gradient(breaks)
     return np.unique(np.concatenate([breaks[apart], steps]))
 
 
 def refined(breaks: Array, chosen: NDArray[np.bool_]) -> Array:
-    """The breaks, with the chosen intervals, shape (K,) of bool, cut in half."""
+    """The breaks, with the chosen intervals, shape (K,) of bool, cut in half unless they are very short."""
     middles = (breaks[:-1] + breaks[1:]) / 2
-    return np.sort(np.concatenate([breaks, middles[chosen]]))
+    cut = chosen & (np.diff(breaks) > SHORTEST * breaks[-1])
+    return np.sort(np.concatenate([breaks, middles[cut]]))
