@@ -14,9 +14,11 @@ from robots.body import RobotBody, connect
 from robots.description import RobotDescription
 
 _TOLERANCE = 1e-6  # of position [m] and rotation [rad]; PyBullet's link states carry noise of about 3e-8
-_SETTLED = 1e-3  # [rad]; a step this small means that the posture has settled in the null space, too
+_SETTLED = (
+    1e-4  # [rad]; a step this small means that the posture has settled, so that the joint path is smooth
+)
 _MAX_STEPS = 100
-_POSTURE_GAIN = 0.3  # share of the way to the home posture per step, where the task leaves it free
+_POSTURE_GAIN = 0.8  # share of the way to the home posture per step, where the task leaves it free
 _MAX_JOINT_STEP = 0.3  # [rad]; far goals are approached in steps for which the Jacobian still speaks
 _DAMPING = 1e-6  # squared singular value below which a direction of the tool counts as lost
 

@@ -66,10 +66,10 @@ def plan_motion(
 
     above = kinematics.inverse(tool_above(start, task.carry_height, yaw), np.array(robot.home))
     down = line(above, [[*start, task.carry_height], [*start, task.grasp_height]])
-    up = line(down[-1], [[*start, task.grasp_height], [*start, task.carry_height]])
+    up = down[::-1]
     carry = line(up[-1], [[*point, task.carry_height] for point in path])
     lower = line(carry[-1], [[*goal, task.carry_height], [*goal, task.release_height]])
-    leave = line(lower[-1], [[*goal, task.release_height], [*goal, task.carry_height]])
+    leave = lower[::-1]
     return (
         Stage("approach", move(parked, down[0], limits), open_, False),
         Stage("descend", _timed(down, limits), open_, False),
