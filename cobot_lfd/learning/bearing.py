@@ -30,18 +30,20 @@ class BearingTest:
         prior_strength: How many demonstrations that expectation is worth.
         outliers: Share of demonstrations that may disagree.
         window: Part of the path over which the evidence must last.
-        margin: Evidence above which the frame is called oriented [nat].
-        doubt: Evidence must lie this far from the margin to be called certain [nat].
+        margin: Evidence above which the frame is called oriented [nat per demonstration].
+        doubt: Evidence must lie this far from the margin to be called certain [nat per demonstration].
         nearest: Bearings of points closer to the frame than this part of the path's size say nothing.
+        looks: Normalised times at which the usual place of the path in another frame's axes is looked at.
     """
 
     prior_spread: float = np.radians(5.0)
     prior_strength: float = 2.0
     outliers: float = 0.05
     window: float = 0.03
-    margin: float = 3.0
-    doubt: float = 2.0
+    margin: float = 0.55
+    doubt: float = 0.25
     nearest: float = 0.03
+    looks: tuple[float, ...] = (0.25, 0.5, 0.75)
 
 
 def bearing_evidence(data: TaskData, test: BearingTest) -> Array:
@@ -55,9 +57,13 @@ def bearing_evidence(data: TaskData, test: BearingTest) -> Array:
         rivals = [np.full(len(data.times), -_log_sphere(own.shape[-1])) * weight.sum(axis=0)]
         for other in range(n_frames):
             if other != frame:
-                relative = np.einsum("ntd,nde->nte", directions[:, frame], _sight_axes(data, frame, other))
-                rivals.append(_held_out(relative, weight, test).sum(axis=0))
+                for target in _targets(data, other, test):
+                    axes = _sight_axes(target - data.scenes.positions[:, frame])
+                    relative = np.einsum("ntd,nde->nte", directions[:, frame], axes)
+                    rivals.append(_held_out(relative, weight, test).sum(axis=0))
         gain = _held_out(own[:, frame], weight, test).sum(axis=0) - np.max(rivals, axis=0)
+        # A few demonstrations agree by chance: a time speaks for a direction only where all can tell.
+        gain = np.where(weight.all(axis=0), gain, np.minimum(gain, 0.0))
         evidence[frame] = _lasting(gain, test.window)
     return evidence
 
@@ -70,12 +76,19 @@ def _directions(data: TaskData, test: BearingTest) -> tuple[Array, Array]:
     return offsets / np.where(seen, distance, 1.0)[..., None], seen.astype(np.float64)
 
 
-def _sight_axes(data: TaskData, frame: int, other: int) -> Array:
-    """Axes with the line of sight to another frame first, as columns, shape (N, d, d).
+def _targets(data: TaskData, frame: int, test: BearingTest) -> list[Array]:
+    """What may be looked at, each (N, d): a frame's origin, and where the path usually is in its axes."""
+    usual = data.local[:, frame].mean(axis=0)
+    steps = [round(time * (len(data.times) - 1)) for time in test.looks]
+    positions, rotations = data.scenes.positions[:, frame], data.scenes.rotations[:, frame]
+    return [positions, *(positions + rotations @ usual[step] for step in steps)]
+
+
+def _sight_axes(sight: Array) -> Array:
+    """Axes with a line of sight first, as columns: (N, d) -> (N, d, d).
 
     In the plane the second axis is square to it; in space it is horizontal (the third world axis is up).
     """
-    sight = data.scenes.positions[:, other] - data.scenes.positions[:, frame]
     d = sight.shape[1]
     first = sight / np.maximum(np.linalg.norm(sight, axis=1, keepdims=True), 1e-12)
     if d == 2:

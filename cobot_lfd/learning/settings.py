@@ -1,9 +1,12 @@
 """The settings of a fit, and the three methods as sets of settings."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
+from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning.bearing import BearingTest
+from cobot_lfd.learning.course import CourseSettings
 from cobot_lfd.learning.criteria import Criteria
 from cobot_lfd.learning.em import EMSettings
 from cobot_lfd.learning.sharing import Sharing
@@ -24,6 +27,13 @@ class Identifier(Enum):
     BEARING = "bearing"
 
 
+class Generator(Enum):
+    """How a path comes about in a new scene."""
+
+    PRODUCT = "product"
+    COURSE = "course"
+
+
 class RingDirection(Enum):
     """Which way a ring looks."""
 
@@ -42,24 +52,35 @@ class LearningSettings:
         identifier: How the frames' kinds are found.
         criteria: Thresholds of the paper's identifier.
         bearing: Settings of the bearing likelihood ratio.
-        ring_direction: Which way a ring looks.
+        generator: The product of the frames' Gaussians, or the regression on the whole scene.
+        ring_direction: Which way a ring looks in the product.
+        jerk_weight: Penalty on jerk in following the product; 0: none.
+        course: Parts of the regression on the whole scene.
+        select_frames: Leave out frames that do not help.
+        kinds: Kinds that the user knows; they are not put to the test.
     """
 
     em: EMSettings = field(default_factory=EMSettings)
-    encode: Encode = Encode.KERNEL
+    encode: Encode = Encode.MIXTURE
     kernel_width: float = 0.02
     identifier: Identifier = Identifier.BEARING
     criteria: Criteria = field(default_factory=Criteria)
     bearing: BearingTest = field(default_factory=BearingTest)
+    generator: Generator = Generator.COURSE
     ring_direction: RingDirection = RingDirection.SEQUENCE
+    jerk_weight: float = 0.0
+    course: CourseSettings = field(default_factory=CourseSettings)
+    select_frames: bool = True
+    kinds: Mapping[str, FrameKind] = field(default_factory=dict)
 
 
 IMPROVED = LearningSettings()
 PAPER = LearningSettings(
     em=EMSettings(sharing=Sharing()),
-    encode=Encode.MIXTURE,
     identifier=Identifier.CRITERIA,
+    generator=Generator.PRODUCT,
     ring_direction=RingDirection.NEAREST,
+    select_frames=False,
 )
 CONVENTIONAL = replace(PAPER, em=EMSettings(), identifier=Identifier.ALL_ORIENTED)
 

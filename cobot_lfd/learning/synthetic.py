@@ -67,9 +67,19 @@ class SyntheticTask:
     dimension: int = 2
 
     @property
+    def leaves_by_slot(self) -> bool:
+        """Whether the path leaves the first frame along its slot; without length there is none."""
+        return self.start_oriented and self.slot > 0
+
+    @property
+    def enters_by_slot(self) -> bool:
+        """Whether the path enters the last frame along its slot."""
+        return self.end_oriented and self.slot > 0
+
+    @property
     def kinds(self) -> dict[str, bool]:
         """Whether each frame is oriented, by name."""
-        kinds = {"start": self.start_oriented, "end": self.end_oriented}
+        kinds = {"start": self.leaves_by_slot, "end": self.enters_by_slot}
         if self.via:
             kinds["via"] = False
         if self.irrelevant:
@@ -126,10 +136,13 @@ def recorded(task: SyntheticTask, scene: dict[str, Pose], rng: np.random.Generat
 
 
 def demonstrate(
-    task: SyntheticTask, rng: np.random.Generator, n_steps: int = 200
+    task: SyntheticTask,
+    rng: np.random.Generator,
+    n_steps: int = 200,
+    scene: dict[str, Pose] | None = None,
 ) -> Demonstration | SpatialDemonstration:
-    """A demonstration in a new scene."""
-    scene = draw_scene(task, rng)
+    """A demonstration in the given scene, or in a new one."""
+    scene = draw_scene(task, rng) if scene is None else scene
     bows = rng.uniform(-task.bow, task.bow, 2)
     waits = rng.uniform(0.5, 1.5, 2) * task.wait
     progress = _progress(task, np.linspace(0, 1, n_steps), *waits) ** np.exp(rng.normal(0, task.warp))
@@ -174,13 +187,13 @@ def _axes(task: SyntheticTask, oriented: bool, towards: Array, rng: np.random.Ge
 
 def _curve(task: SyntheticTask, scene: dict[str, Pose], bows: tuple[float, float]) -> Array:
     """The whole path as a fine polyline of the task's dimension."""
-    slot_start = task.slot * task.start_oriented
-    slot_end = task.slot * task.end_oriented
+    slot_start = task.slot * task.leaves_by_slot
+    slot_end = task.slot * task.enters_by_slot
     stops = [scene["start"].apply([slot_start, 0, 0]), scene["end"].apply([slot_end, 0, 0])]
     if task.via:
         stops.insert(1, scene["via"].position)
-    out_of = scene["start"].rotation[:, 0] if task.start_oriented else None
-    into = scene["end"].rotation[:, 0] if task.end_oriented else None
+    out_of = scene["start"].rotation[:, 0] if task.leaves_by_slot else None
+    into = scene["end"].rotation[:, 0] if task.enters_by_slot else None
     headings = [out_of, *([None] if task.via else []), None if into is None else -into]
     if task.via:
         across = stops[2] - stops[0]

@@ -1,0 +1,240 @@
+"""The improved generator: the way by regression on the scene, its timing by the demonstrations."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cobot_lfd.arrays import Array
+from cobot_lfd.learning.data import Scenes, TaskData
+from cobot_lfd.learning.features import FeatureSet
+from cobot_lfd.learning.phase import Phases, Progress, by_phase, common_progress, follow, way_travelled
+from cobot_lfd.learning.scene_regression import (
+    MINIMUM_JERK,
+    STRAIGHT_PARTS,
+    Roughness,
+    SceneRegression,
+    fit_scene_regression,
+)
+from cobot_lfd.learning.smoothing import read, readout
+
+N_PHASES = 200
+"""Steps along the way."""
+UNIT = 2.5
+"""The task's size is this multiple of the paths' root mean square extent: about a straight path's length."""
+REACHES = (0.3, None)
+"""How far from a landmark the way alone counts (see ``phase``); None tells the path by time."""
+JERK_WEIGHTS = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 2e-6)
+"""Penalties on a generated path's jerk that are tried."""
+JERK_TOLERANCE = 0.04
+"""The strongest smoothing is taken that raises the held-out error by less than this part ..."""
+JERK_SHIFT = 3.0
+"""... and moves the path by less than this many standard deviations of the place, nearly everywhere, ..."""
+JERK_PASSING = 0.01
+"""... and keeps as close to the frames that it passes, but for this part of the task's size."""
+SIGHT_ERRORS = 2.0
+"""Lines of sight count where they help by more than so many standard errors."""
+HOLD_RANGE = (1 / 9, 3.0)
+"""Smoothing leaves sure places alone more than others, within these factors on the median variance."""
+END_WEIGHT = 1e-4
+"""The ends of a path are held where the regression puts them: their share of the others' variance."""
+LANDMARK_DISTANCE = 0.12
+"""A frame is a landmark if half the demonstrations pass within this part of the task's size."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """The way, and how it is travelled.
+
+    Attributes:
+        regression: The way through the scene.
+        progress: Share of the way that is done over time.
+        coefficients: From positions over time to the smooth path, shape (B, T).
+        reach: The chosen way of telling phase.
+        jerk_weight: The chosen smoothing.
+    """
+
+    regression: SceneRegression
+    progress: Progress
+    coefficients: Array
+    reach: float | None
+    jerk_weight: float
+
+    def generate(self, scenes: Scenes, n_steps: int) -> tuple[Array, Array]:
+        """Means [m], shape (S, T, d), and covariances [m²], shape (S, T, d, d)."""
+        way = self.regression.predict(scenes)
+        mean = read(self.coefficients @ follow(way, self.progress.mean), n_steps)
+        return mean, self._covariance(scenes, way, mean)
+
+    def notes(self) -> list[str]:
+        """What was chosen, in sentences."""
+        told = "time"
+        if self.reach is not None:
+            told = f"the way from and to landmarks (within {self.reach:.0%} of the mean length)"
+        sight = "and along the lines of sight" if self.regression.features.sight else "and no lines of sight"
+        return [
+            f"Demonstrations are compared by {told}.",
+            f"The path is made of the frames' origins, the oriented frames' axes {sight}.",
+            f"Chosen by leaving demonstrations out: penalty on roughness {self.regression.rough_weight:g}, "
+            f"on size {self.regression.size_weight:g}, on the jerk of generated paths {self.jerk_weight:g}.",
+        ]
+
+    def _covariance(self, scenes: Scenes, way: Array, mean: Array) -> Array:
+        """What the place leaves open, more so in unlike scenes, and along the path what the timing does."""
+        times = np.linspace(0, 1, mean.shape[1])
+        grid = np.linspace(0, 1, len(self.progress.mean))
+        places = np.broadcast_to(self.regression.variance[:, None], (*way.shape[:2], 1))
+        at_place = follow(way, np.interp(times, grid, self.progress.mean), places)
+        length = way_travelled(way)[:, -1]
+        motion = np.gradient(mean, axis=1)
+        speed = np.sqrt((motion**2).sum(axis=-1, keepdims=True)) + 1e-6 * length[:, None, None]
+        timing = np.interp(times, grid, self.progress.spread)[:, None] * length[:, None, None]
+        ahead = motion / speed * timing
+        spread = self.regression.spread(scenes)[:, None]
+        return np.asarray(at_place[..., None] * spread + ahead[..., :, None] * ahead[..., None, :])
+
+
+@dataclass(frozen=True, slots=True)
+class CourseSettings:
+    """Which parts of the improved generator are used.
+
+    Attributes:
+        align: Tell the paths by phase where that predicts better than time.
+        landmarks: Let frames that are passed on the way divide the phase.
+        straighten: Make straight parts straight.
+        smooth: Take out jerk.
+    """
+
+    align: bool = True
+    landmarks: bool = True
+    straighten: bool = True
+    smooth: bool = True
+
+
+def task_size(data: TaskData) -> float:
+    """The length in which a task is measured [m]."""
+    return UNIT * max(data.scale, 1e-6)
+
+
+def fit_course(data: TaskData, oriented: Sequence[bool], settings: CourseSettings) -> Course:
+    """Learn the way and its timing; what is chosen is chosen by leaving one demonstration out in turn.
+
+    Args:
+        data: The demonstrations, with the frames that count.
+        oriented: Which of them are oriented.
+        settings: Which parts to use.
+    """
+    features = FeatureSet(tuple(oriented), False, task_size(data))
+    reach, phases, regression, progress = _best_phases(data, features, settings)
+    with_sight = FeatureSet(tuple(oriented), True, features.unit)
+    if not all(oriented) and len(oriented) > 1:
+        candidate = fit_scene_regression(phases.paths, data.scenes, with_sight)
+        regression = candidate if _clearly_better(candidate, regression) else regression
+    if settings.straighten:
+        regression = fit_scene_regression(phases.paths, data.scenes, regression.features, STRAIGHT_PARTS)
+    ways = _held_out_ways(phases, regression)
+    weight, coefficients = _smoothing(ways, progress, regression, data, settings)
+    return Course(regression, progress, coefficients, reach, weight)
+
+
+def held_out_errors(data: TaskData, oriented: Sequence[bool], roughness: Roughness = MINIMUM_JERK) -> Array:
+    """Mean distance of each demonstration from what the others predict [m], shape (N,)."""
+    features = FeatureSet(tuple(oriented), False, task_size(data))
+    phases = by_phase(data.paths, no_landmarks(data), REACHES[0], N_PHASES)
+    regression = fit_scene_regression(phases.paths, data.scenes, features, roughness)
+    return np.asarray(np.linalg.norm(regression.held_out, axis=1).mean(axis=1))
+
+
+def no_landmarks(data: TaskData) -> Array:
+    """No inner landmarks, shape (N, 0)."""
+    return np.zeros((len(data.paths), 0), dtype=np.intp)
+
+
+def inner_landmarks(data: TaskData) -> Array:
+    """Steps at which each demonstration passes the frames on its way, in their order, shape (N, M)."""
+    distance = np.linalg.norm(data.local, axis=-1)
+    nearest = distance.argmin(axis=-1)
+    step = np.median(nearest, axis=0) / (len(data.times) - 1)
+    close = np.median(distance.min(axis=-1), axis=0) < LANDMARK_DISTANCE * task_size(data)
+    inner = [j for j in np.argsort(step) if close[j] and 0.1 < step[j] < 0.9]
+    landmarks = nearest[:, inner]
+    ordered = (np.diff(landmarks, axis=1) > 0).all() and (landmarks > 0).all()
+    return landmarks if ordered and (landmarks < len(data.times) - 1).all() else no_landmarks(data)
+
+
+def _best_phases(
+    data: TaskData, features: FeatureSet, settings: CourseSettings
+) -> tuple[float | None, Phases, SceneRegression, Progress]:
+    """The way of telling phase that predicts the paths over time best."""
+    choices: list[tuple[float | None, Array]] = [(None, no_landmarks(data))]
+    if settings.align:
+        choices = [(reach, no_landmarks(data)) for reach in REACHES]
+        landmarks = inner_landmarks(data)
+        if settings.landmarks and landmarks.shape[1]:
+            choices.insert(0, (REACHES[0], landmarks))
+    best = None
+    for reach, landmarks in choices:
+        phases = by_phase(data.paths, landmarks, reach, N_PHASES)
+        regression = fit_scene_regression(phases.paths, data.scenes, features)
+        progress = common_progress(data.paths, phases.shares, regression.predict(data.scenes))
+        course = follow(_held_out_ways(phases, regression), progress.mean)
+        error = _distance(course, data).mean()
+        if best is None or error < best[0]:
+            best = error, reach, phases, regression, progress
+    if best is None:
+        raise ValueError("there is no way to tell phase.")
+    return best[1:]
+
+
+def _clearly_better(candidate: SceneRegression, base: SceneRegression) -> bool:
+    """Whether more vectors predict left-out demonstrations better than chance would let them."""
+    floor = (0.01 * base.features.unit) ** 2
+    gain = np.log((base.held_out**2).mean(axis=(1, 2)) + floor) - np.log(
+        (candidate.held_out**2).mean(axis=(1, 2)) + floor
+    )
+    n = len(gain)
+    return n > 2 and bool(gain.mean() > SIGHT_ERRORS * gain.std(ddof=1) / np.sqrt(n))
+
+
+def _held_out_ways(phases: Phases, regression: SceneRegression) -> Array:
+    """Each demonstration's way as predicted from the others [m], shape (N, U, d)."""
+    return np.asarray(phases.paths - np.swapaxes(regression.held_out, 1, 2))
+
+
+def _smoothing(
+    ways: Array, progress: Progress, regression: SceneRegression, data: TaskData, settings: CourseSettings
+) -> tuple[float, Array]:
+    """The strongest smoothing that costs no accuracy, in general or at a place that matters, and its map."""
+    weights = JERK_WEIGHTS if settings.smooth else JERK_WEIGHTS[:1]
+    course = follow(ways, progress.mean)
+    places = np.broadcast_to(regression.variance[:, None], (*ways.shape[:2], 1))
+    variance = follow(ways, progress.mean, places)[..., 0]
+    sureness = 1.0 / np.sqrt(variance)
+    usual = np.exp(np.log(variance).mean(axis=0))
+    hold = np.clip(usual / np.median(usual), *HOLD_RANGE)
+    hold[[0, -1]] = END_WEIGHT
+    maps = [readout(hold, weight) for weight in weights]
+    smooth = [read(m @ course, len(data.times)) for m in maps]
+    errors = [_distance(path, data).mean() for path in smooth]
+    shifts = [np.quantile(np.linalg.norm(path - course, axis=-1) * sureness, 0.95) for path in smooth]
+    allowed = min(errors) * (1 + JERK_TOLERANCE)
+    passing = [_passing_distance(path, data) for path in smooth]
+    closest = _passing_distance(course, data) + JERK_PASSING * task_size(data)
+    good = [
+        i
+        for i in range(len(maps))
+        if errors[i] <= allowed and shifts[i] <= JERK_SHIFT and (passing[i] <= closest).all()
+    ]
+    chosen = max(good, default=0)
+    return weights[chosen], maps[chosen]
+
+
+def _passing_distance(course: Array, data: TaskData) -> Array:
+    """How close the paths come to each frame, mean over the demonstrations [m], shape (J,)."""
+    offsets = course[:, None] - data.scenes.positions[:, :, None]
+    return np.asarray(np.linalg.norm(offsets, axis=-1).min(axis=-1).mean(axis=0))
+
+
+def _distance(course: Array, data: TaskData) -> Array:
+    """Distance from the demonstrations, shape (N, T)."""
+    return np.asarray(np.linalg.norm(course - data.paths, axis=-1))

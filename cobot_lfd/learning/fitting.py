@@ -1,0 +1,145 @@
+"""The steps of a fit, by the settings."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cobot_lfd.frame import FrameKind
+from cobot_lfd.learning.course import Course, fit_course
+from cobot_lfd.learning.criteria import fulfilled
+from cobot_lfd.learning.data import TaskData, TaskDemonstration, collect
+from cobot_lfd.learning.em import EMFit, fit_mixture
+from cobot_lfd.learning.encoding import Encoding, MixtureEncoding, fit_rings, tabulate
+from cobot_lfd.learning.frame_product import FrameProduct
+from cobot_lfd.learning.generate import find_visits
+from cobot_lfd.learning.identification import Certainty, Finding, identify_by_bearing
+from cobot_lfd.learning.selection import select_frames
+from cobot_lfd.learning.settings import (
+    Encode,
+    Generator,
+    Identifier,
+    LearningSettings,
+    RingDirection,
+)
+
+MAX_STEPS = 200
+"""Steps to which long recordings are brought, except for mixtures, which use every sample."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Learnt:
+    """All that a fit finds out."""
+
+    findings: Sequence[Finding]
+    used_frames: tuple[str, ...]
+    generator: FrameProduct | Course
+    notes: Sequence[str]
+    duration: float
+    dimension: int
+
+
+def learn(
+    demonstrations: Sequence[TaskDemonstration], settings: LearningSettings, rng: np.random.Generator
+) -> Learnt:
+    """From demonstrations to a generator.
+
+    Args:
+        demonstrations: The demonstrations.
+        settings: All choices.
+        rng: For k-means initialisation only.
+
+    Raises:
+        ValueError: If a frame is named whose kind is known, and there is none.
+    """
+    mixtures = settings.generator is Generator.PRODUCT and settings.encode is Encode.MIXTURE
+    data = collect(demonstrations, None if mixtures else MAX_STEPS)
+    findings = _with_known_kinds(_identify(data, settings, rng), settings)
+    oriented = [finding.kind is FrameKind.ORIENTED for finding in findings]
+    used = select_frames(data, oriented) if settings.select_frames else list(range(len(data.names)))
+    kept = data.take(used)
+    generator, notes = _generator(kept, [oriented[j] for j in used], settings, rng)
+    return Learnt(findings, kept.names, generator, notes, data.duration, data.paths.shape[-1])
+
+
+def _identify(data: TaskData, settings: LearningSettings, rng: np.random.Generator) -> list[Finding]:
+    """Each frame's kind by the chosen test."""
+    if settings.identifier is Identifier.BEARING:
+        return identify_by_bearing(data, settings.bearing)
+    if settings.identifier is Identifier.ALL_ORIENTED or len(data.names) == 1:
+        reason = "counts as oriented, as conventional mixtures take every frame."
+        return [
+            Finding(name, FrameKind.ORIENTED, Certainty.ASSUMED, 0.0, f"'{name}' {reason}")
+            for name in data.names
+        ]
+    mixture = fit_mixture(data.local, data.times, settings.em, rng).mixture
+    counts = fulfilled(mixture, settings.criteria).sum(axis=0)
+    return [
+        _by_criteria(name, int(n), len(mixture.weights)) for name, n in zip(data.names, counts, strict=True)
+    ]
+
+
+def _by_criteria(name: str, n_fulfilled: int, n_components: int) -> Finding:
+    """One frame's kind by the paper's criteria."""
+    kind = FrameKind.ORIENTED if n_fulfilled else FrameKind.ORIENTATION_LESS
+    reason = (
+        f"'{name}' is {kind.value}: {n_fulfilled} of its {n_components} Gaussians are narrow and stretch "
+        "along the path."
+    )
+    return Finding(name, kind, Certainty.FOUND, 0.0, reason)
+
+
+def _with_known_kinds(findings: list[Finding], settings: LearningSettings) -> list[Finding]:
+    """The findings, overruled where the user knows."""
+    names = [finding.name for finding in findings]
+    unknown = sorted(set(settings.kinds) - set(names))
+    if unknown:
+        raise ValueError(f"kinds names '{unknown[0]}'; the demonstrations have {', '.join(names)}.")
+    return [
+        finding
+        if finding.name not in settings.kinds
+        else Finding(
+            finding.name,
+            settings.kinds[finding.name],
+            Certainty.GIVEN,
+            finding.evidence,
+            f"'{finding.name}' is {settings.kinds[finding.name].value}, as given.",
+        )
+        for finding in findings
+    ]
+
+
+def _generator(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> tuple[FrameProduct | Course, list[str]]:
+    """What makes paths, with what there is to say about it."""
+    if settings.generator is Generator.COURSE:
+        course = fit_course(data, oriented, settings.course)
+        return course, course.notes()
+    encoding, notes = _encoding(data, oriented, settings, rng)
+    visits = find_visits(data) if settings.ring_direction is RingDirection.SEQUENCE else None
+    return FrameProduct(encoding, tuple(oriented), visits, settings.jerk_weight), notes
+
+
+def _encoding(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> tuple[Encoding, list[str]]:
+    """What is known of the path seen from each frame."""
+    if settings.encode is Encode.KERNEL:
+        table = tabulate(data, settings.kernel_width, settings.em.reg_covar)
+        return table, [f"The path seen from each frame is kept at {len(data.times)} times."]
+    joint = fit_mixture(data.local, data.times, settings.em, rng)
+    less = [j for j, is_oriented in enumerate(oriented) if not is_oriented]
+    rings = fit_rings(data, less, settings.em, rng)
+    notes = [_fit_note("The mixture", joint)]
+    notes += [_fit_note(f"The rings of '{data.names[j]}'", fit) for j, fit in rings.items()]
+    return MixtureEncoding(joint.mixture, {j: fit.mixture for j, fit in rings.items()}), notes
+
+
+def _fit_note(what: str, fit: EMFit) -> str:
+    """How a fit went."""
+    end = "converged" if fit.converged else "stopped without converging; raise max_iter or tol"
+    return (
+        f"{what}: {len(fit.mixture.weights)} Gaussians, {fit.n_iterations} iterations, {end}, mean "
+        f"log-likelihood {fit.log_likelihood[-1]:.3f}."
+    )

@@ -1,0 +1,187 @@
+"""Where along the task a point of a path lies, whatever the speed: its phase, from 0 to 1.
+
+Timing differs between demonstrations, and a longer way between two frames shifts everything in time. What
+comes back in every demonstration is tied to *places*: so many centimetres after leaving the first frame, so
+many before arriving at the next. The phase therefore counts the way travelled since the last landmark and
+the way left to the next one, f(s) / (f(s) + f(l - s)) with f(s) = s / (s + reach): near a landmark it
+depends on the distance to it alone, half way between two it is the share of the way.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from cobot_lfd.arrays import Array
+
+SMOOTHING = 0.02
+"""Trembling is filtered out before a way is measured: standard deviation in units of the duration."""
+
+STRIDE = 0.04
+"""The way is measured in strides of this part of the path's extent, several times a hand's trembling."""
+
+LARGEST_STEP = 0.1
+"""Largest correction of a demonstration's progress at once, as a share of the way."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Phases:
+    """The demonstrations told by phase, and how far along they are over time.
+
+    Attributes:
+        paths: Positions at equally spaced phases [m], shape (N, U, d).
+        shares: Share of the way that each demonstration has done at each time of the grid, shape (N, T).
+    """
+
+    paths: Array
+    shares: Array
+
+
+def way_travelled(paths: Array) -> Array:
+    """Length of the path up to each point [m], shape (..., T)."""
+    steps = np.linalg.norm(np.diff(paths, axis=-2), axis=-1)
+    return np.concatenate([np.zeros((*steps.shape[:-1], 1)), np.cumsum(steps, axis=-1)], axis=-1)
+
+
+def way_despite_trembling(paths: Array) -> Array:
+    """Length of the path up to each point [m], not counting trembling on the spot, shape (N, T).
+
+    The way grows by the greatest distance reached from an anchor; the anchor follows in strides.
+    """
+    n, t, _ = paths.shape
+    stride = STRIDE * np.linalg.norm(paths.max(axis=1) - paths.min(axis=1), axis=1)
+    anchor, behind, ahead = paths[:, 0].copy(), np.zeros(n), np.zeros(n)
+    way = np.zeros((n, t))
+    for step in range(1, t):
+        ahead = np.maximum(ahead, np.linalg.norm(paths[:, step] - anchor, axis=1))
+        way[:, step] = behind + ahead
+        arrived = ahead >= stride
+        behind = np.where(arrived, way[:, step], behind)
+        anchor = np.where(arrived[:, None], paths[:, step], anchor)
+        ahead = np.where(arrived, 0.0, ahead)
+    return way
+
+
+def by_phase(paths: Array, landmarks: Array, reach: float | None, n_phases: int) -> Phases:
+    """Tell the demonstrations by phase instead of time.
+
+    Args:
+        paths: Positions over time [m], shape (N, T, d).
+        landmarks: Steps at which each demonstration passes the inner landmarks, shape (N, M), in order.
+        reach: How far from a landmark the way alone counts, in units of the mean length; None: phase is time.
+        n_phases: U.
+    """
+    n, t, _ = paths.shape
+    times = np.linspace(0.0, 1.0, t)
+    smooth = gaussian_filter1d(paths, max(SMOOTHING * t, 1e-3), axis=1, mode="nearest")
+    way = way_despite_trembling(smooth)
+    length = way[:, -1:]
+    shares = np.where(length > 0, way / np.where(length > 0, length, 1.0), times)
+    phases = np.tile(times, (n, 1)) if reach is None else _piecewise(way, landmarks, reach * length.mean())
+    phases = phases + 1e-9 * times
+    phases = (phases - phases[:, :1]) / (phases[:, -1:] - phases[:, :1])
+    at = np.linspace(0.0, 1.0, n_phases)
+    told = np.stack(
+        [
+            np.stack([np.interp(at, phase, axis) for axis in path.T], axis=1)
+            for phase, path in zip(phases, paths, strict=True)
+        ]
+    )
+    return Phases(told, shares)
+
+
+def _piecewise(way: Array, landmarks: Array, reach: float) -> Array:
+    """Phase of each sample, with the landmarks at the same phase in all demonstrations, shape (N, T)."""
+    n, t = way.shape
+    stops = np.concatenate([np.zeros((n, 1), int), landmarks, np.full((n, 1), t - 1)], axis=1)
+    at_stops = np.take_along_axis(way, stops, axis=1)
+    legs = np.maximum(np.diff(at_stops, axis=1), 1e-9)
+    share = np.median(legs, axis=0)
+    # With these shares the phase's rate does not jump at a landmark.
+    share = share / (share + reach) if reach > 0 else share
+    share = share / share.sum()
+    out = np.zeros((n, t))
+    for leg in range(legs.shape[1]):
+        length = legs[:, leg, None]
+        done = np.clip(way - at_stops[:, leg, None], 0.0, length)
+        first, last = done / (done + reach), (length - done) / (length - done + reach)
+        out += share[leg] * first / (first + last)
+    return out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Progress:
+    """How far along the way the demonstrations are.
+
+    Attributes:
+        mean: Share of the way that is done, over time, from 0 to 1, shape (T,).
+        spread: Its standard deviation between demonstrations, shape (T,).
+    """
+
+    mean: Array
+    spread: Array
+
+
+def common_progress(paths: Array, shares: Array, fitted: Array) -> Progress:
+    """How the demonstrations progress on average.
+
+    A demonstration's trembling lengthens its way, most where it waits. So its progress is read off the
+    fitted way of its scene instead: from the share of the way travelled, by steps along the tangent to the
+    point next to it.
+
+    Args:
+        paths: Positions over time [m], shape (N, T, d).
+        shares: First guess of each demonstration's progress, shape (N, T).
+        fitted: The fitted ways [m], shape (N, U, d).
+    """
+    n_steps = fitted.shape[1]
+    even = follow(fitted, np.linspace(0, 1, n_steps))
+    length = np.maximum(way_travelled(even)[:, -1], 1e-9)[:, None]
+    tangent = np.gradient(even, axis=1)
+    tangent = tangent / np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-12)
+    for _ in range(2):
+        place = np.clip(shares, 0.0, 1.0) * (n_steps - 1)
+        low = np.minimum(place.astype(int), n_steps - 2)[..., None]
+        part = place[..., None] - low
+        point, direction = (
+            np.take_along_axis(table, low, axis=1) * (1 - part)
+            + np.take_along_axis(table, low + 1, axis=1) * part
+            for table in (even, tangent)
+        )
+        ahead = ((paths - point) * direction).sum(axis=-1) / length
+        shares = place / (n_steps - 1) + np.clip(ahead, -LARGEST_STEP, LARGEST_STEP)
+    spread = shares.std(axis=0, ddof=min(1, len(shares) - 1))
+    mean = gaussian_filter1d(shares.mean(axis=0), max(0.5 * SMOOTHING * len(shares[0]), 1e-3), mode="nearest")
+    mean = np.maximum.accumulate(np.clip(mean, 0.0, 1.0))
+    span = mean[-1] - mean[0]
+    return Progress((mean - mean[0]) / span if span > 1e-9 else np.linspace(0, 1, len(mean)), spread)
+
+
+def follow(paths: Array, progress: Array, carried: Array | None = None) -> Array:
+    """Run along paths so that at each time the given share of the way is done.
+
+    Args:
+        paths: S polylines [m], shape (S, U, d).
+        progress: Shares in 0..1, not decreasing, shape (T,).
+        carried: What is wanted along the way instead of the positions, shape (S, U, e).
+
+    Returns:
+        Positions over time [m], shape (S, T, d), or what was carried, shape (S, T, e).
+    """
+    s, u, _ = paths.shape
+    way = way_travelled(paths)
+    length = way[:, -1:]
+    shares = np.where(length > 0, way / np.where(length > 0, length, 1.0), np.linspace(0, 1, u))
+    # One search for all scenes: scene i's shares are moved to [2 i, 2 i + 1].
+    offsets = 2.0 * np.arange(s)[:, None]
+    wanted = (progress + offsets).ravel()
+    known = (shares + offsets).ravel()
+    first = np.arange(s)[:, None] * u
+    found = np.searchsorted(known, wanted).reshape(s, -1)
+    right = np.clip(found, first + 1, first + u - 1).ravel()
+    step = known[right] - known[right - 1]
+    share = np.where(step > 0, (wanted - known[right - 1]) / np.where(step > 0, step, 1.0), 0.0)
+    share = np.clip(share, 0.0, 1.0)[:, None]
+    table = paths if carried is None else carried
+    flat = table.reshape(s * u, -1)
+    return np.asarray(flat[right - 1] * (1 - share) + flat[right] * share).reshape(s, len(progress), -1)
