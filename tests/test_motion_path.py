@@ -97,6 +97,23 @@ def test_a_path_of_identical_waypoints_stays_where_it_is(n_waypoints: int) -> No
         assert not path(np.array([0.0, 0.5, 1.0]), order).any()
 
 
+def test_given_parameters_say_where_on_the_path_each_waypoint_lies() -> None:
+    times = np.sort(np.random.default_rng(10).uniform(2.0, 5.0, 30))
+    waypoints = np.column_stack([np.sin(times), np.cos(times)])
+    path = JointPath.through(waypoints, parameters=times, tolerance=0)
+    assert_allclose(path((times - times[0]) / (times[-1] - times[0])), waypoints, atol=1e-12)
+
+
+def test_a_motion_that_turns_back_by_slowing_down_stays_smooth_if_its_own_time_is_the_parameter() -> None:
+    """The joints swing out by a hundredth of a radian and back before they set off."""
+    time = np.linspace(0, 1, 200)
+    waypoints = ((time - 0.1) ** 2)[:, None] * np.array([1.0, -0.5, 0.8, 0.3, 1.0, 0.2, 0.4])
+    by_time = JointPath.through(waypoints, parameters=np.arange(200))
+    by_distance = JointPath.through(waypoints)
+    durations = [time_path(path, DATA_SHEET).duration for path in (by_time, by_distance)]
+    assert durations[0] < 0.2 * durations[1]
+
+
 def test_the_path_ends_where_its_parameter_does() -> None:
     path = random_path(8)
     assert_allclose(path(np.array([-1.0, 2.0])), path(np.array([0.0, 1.0])), atol=0)
@@ -120,5 +137,7 @@ def test_unfit_waypoints_are_told() -> None:
         JointPath.through(np.zeros((0, 7)))
     with pytest.raises(ValueError, match=r"waypoints has shape \(3,\)"):
         JointPath.through([0.0, 1.0, 2.0])
+    with pytest.raises(ValueError, match=r"parameters\[2\] is 1\.0, after 1\.0; they must strictly increase"):
+        JointPath.through([[0.0], [1.0], [2.0]], parameters=[0.0, 1.0, 1.0])
     with pytest.raises(ValueError, match=r"tolerance is -0.1 rad; it must be 0 or positive"):
         JointPath.through([[0.0], [1.0]], tolerance=-0.1)

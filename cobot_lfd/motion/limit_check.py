@@ -21,7 +21,7 @@ SLACK = 1e-9
 
 ROUNDING = 1e-14
 """Error of a position [rad] by 64-bit arithmetic; at 4 kHz a third difference makes it 0.005 rad/s^3. To it
-comes the error of the time, by which a joint at full speed is off."""
+comes the error of the time, by which a moving joint is off."""
 
 UNITS = ("rad/s", "rad/s^2", "rad/s^3")
 
@@ -60,7 +60,8 @@ def check_limits(trajectory: JointTrajectory, limits: JointLimits) -> None:
     """
     positions = _positions(trajectory, limits)
     check_positions(positions, limits)
-    rounding = ROUNDING + np.finfo(np.float64).eps * trajectory.duration * limits.velocity
+    fastest = np.abs(_differences(positions, 1)).max(axis=0)
+    rounding = ROUNDING + np.finfo(np.float64).eps * trajectory.duration * fastest
     names = ("velocity", "acceleration", "jerk")
     for order, (name, unit) in enumerate(zip(names, UNITS, strict=True), start=1):
         limit = getattr(limits, name)

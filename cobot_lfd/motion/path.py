@@ -39,10 +39,12 @@ class JointPath:
         object.__setattr__(self, "knots", frozen_array(self.knots, "knots", (n_knots,)))
 
     @classmethod
-    def through(cls, waypoints: ArrayLike, *, tolerance: float = 1e-4) -> "JointPath":
+    def through(
+        cls, waypoints: ArrayLike, *, parameters: ArrayLike | None = None, tolerance: float = 1e-4
+    ) -> "JointPath":
         """The smoothest path that starts at the first waypoint, ends at the last and passes near the others.
 
-        The parameter s grows with the distance between successive waypoints. Waypoints that come from inverse
+        Waypoints that come from inverse
         kinematics carry its residual as noise; a path that follows 2e-4 rad of noise takes four times as
         long, because the noise bends it. ``tolerance`` says how much may be smoothed away.
 
@@ -50,22 +52,30 @@ class JointPath:
 
         Args:
             waypoints: Joint positions [rad], shape (M, n), M >= 1. Repeated waypoints count once.
+            parameters: How far along the path each waypoint lies, in any unit, increasing, shape (M,).
+                By default the distance between successive waypoints counts. Where they are even samples of a
+                smooth motion (a demonstration, a learnt path), their numbers 0, 1, 2, ... are better: such a
+                motion may turn back on itself by slowing down, and measured by distance the same turn is an
+                edge, around which the arm takes many times as long.
             tolerance: Largest distance, joint by joint, between a waypoint and the path [rad]. With 0 the
                 path passes through every waypoint; the first and the last it meets exactly in any case.
 
         Raises:
-            ValueError: If ``waypoints`` is empty, has another shape or holds a number that is not finite, or
-                if ``tolerance`` is negative.
+            ValueError: If ``waypoints`` is empty, has another shape or holds a number that is not finite,
+                if ``parameters`` do not increase, or if ``tolerance`` is negative.
         """
         points = frozen_array(waypoints, "waypoints", (None, None))
         if not points.size:
             raise ValueError(f"waypoints has shape {points.shape}; a path needs at least one waypoint.")
         if not tolerance >= 0:
             raise ValueError(f"tolerance is {tolerance} rad; it must be 0 or positive.")
-        points = _without_repetitions(points)
+        given = None if parameters is None else _checked_parameters(parameters, len(points))
+        kept = _without_repetitions(points)
+        points = points[kept]
         if len(points) == 1:
             return cls(np.array([0.0, 1.0]), points, 0)
-        spline = fit_spline(_chord_parameters(points), points, tolerance)
+        u = _from_0_to_1(_distances(points) if given is None else given[kept])
+        spline = fit_spline(u, points, tolerance)
         return cls(spline.t, spline.c, spline.k)
 
     @property
@@ -87,19 +97,29 @@ class JointPath:
         return np.asarray(spline(s, nu=order), dtype=np.float64)
 
 
-def _without_repetitions(points: Array) -> Array:
-    """The waypoints, less those that repeat their predecessor; the first and the last stay as they are."""
-    kept = [points[0]]
-    for point in points[1:]:
-        if np.abs(point - kept[-1]).max() > SAME_WAYPOINT:
-            kept.append(point)
-    if len(kept) > 1:
-        kept[-1] = points[-1]
-    return np.array(kept)
+def _without_repetitions(points: Array) -> list[int]:
+    """Which waypoints to keep: all but those that repeat their predecessor, and the last in any case."""
+    kept = [0]
+    for i in range(1, len(points)):
+        if np.abs(points[i] - points[kept[-1]]).max() > SAME_WAYPOINT:
+            kept.append(i)
+    return kept if len(kept) == 1 else [*kept[:-1], len(points) - 1]
 
 
-def _chord_parameters(points: Array) -> Array:
-    """The share of the way from the first to the last waypoint that lies behind each, shape (M,)."""
-    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    parameters = np.concatenate([[0.0], np.cumsum(lengths)])
-    return np.asarray(parameters / parameters[-1])
+def _checked_parameters(parameters: ArrayLike, n: int) -> Array:
+    parameters = frozen_array(parameters, "parameters", (n,))
+    if (np.diff(parameters) <= 0).any():
+        i = int(np.argmax(np.diff(parameters) <= 0))
+        raise ValueError(
+            f"parameters[{i + 1}] is {parameters[i + 1]}, after {parameters[i]}; they must strictly increase."
+        )
+    return parameters
+
+
+def _distances(points: Array) -> Array:
+    """Distance from the first waypoint, along the polygon through the others [rad], shape (M,)."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+def _from_0_to_1(values: Array) -> Array:
+    return np.asarray((values - values[0]) / (values[-1] - values[0]))
