@@ -11,8 +11,8 @@ from cobot_lfd.motion.path import JointPath
 from cobot_lfd.motion.time_law import TimeLaw
 
 SAME_POSITION = 1e-7
-"""How far apart two trajectories may meet [rad]: a jump that no control loop can tell from none. Paths leave out
-ways as short as this."""
+"""How far apart two trajectories may meet [rad]: no control loop can tell such a jump from none, and paths
+leave out ways as short as this."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
