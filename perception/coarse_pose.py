@@ -11,10 +11,16 @@ from perception.silhouette import corners_in_world
 
 _ANGLE_STEP = np.deg2rad(5.0)
 _N_DIRECTIONS = 48
+_MOST_POSES = 3
+_N_PUSHES = 8
+_N_REWEIGHTINGS = 8
+_AGREEMENT = 3.0  # Difference in reach up to which two shapes agree [px].
 _N_TIMES_WORSE = 2.0  # A pose that fits this many times worse than the best one is not worth a try.
 
 
-def guess_poses(region: Region, model: ObjectModel, camera: Camera, scale: int, n: int) -> list[Frame]:
+def guess_poses(
+    region: Region, model: ObjectModel, camera: Camera, scale: int, *, covered: bool = False
+) -> list[Frame]:
     """The poses in which the object's image is most like a region, the likeliest first.
 
     Two convex shapes are the same if they reach equally far in every direction (their support functions
@@ -25,7 +31,7 @@ def guess_poses(region: Region, model: ObjectModel, camera: Camera, scale: int, 
         model: The object.
         camera: The camera.
         scale: Side of the squares of pixels that the region was found in [px].
-        n: How many poses to return at most.
+        covered: Whether a part of the object may be covered, so that the region reaches less far.
     """
     directions = np.linspace(0.0, 2 * np.pi, _N_DIRECTIONS, endpoint=False)
     normals = np.column_stack([np.cos(directions), np.sin(directions)])
@@ -34,15 +40,47 @@ def guess_poses(region: Region, model: ObjectModel, camera: Camera, scale: int, 
     angles = np.arange(0.0, 2 * np.pi / model.symmetry - 1e-9, _ANGLE_STEP)
     corners = np.array([corners_in_world(model, Frame(middle, angle)) for angle in angles])
     excess = reach - (camera.project(corners) @ normals.T).max(axis=1)
-    shifts = excess @ np.linalg.pinv(normals).T
-    misfits = np.linalg.norm(excess - shifts @ normals.T, axis=1)
-    frames = []
+    shifts, misfits = _align_covered(excess, normals) if covered else _align(excess, normals)
     lowest = _local_minima(misfits)
-    likely = lowest[misfits[lowest] < _N_TIMES_WORSE * misfits[lowest[0]]]
-    for i in likely[:n]:
-        moved = camera.to_plane(camera.project([*middle, model.z]) + shifts[i], model.z)
-        frames.append(Frame(moved, float(angles[i])))
-    return frames
+    likely = lowest[misfits[lowest] <= _N_TIMES_WORSE * misfits[lowest[0]]]
+    start = camera.project([*middle, model.z])
+    return [
+        Frame(camera.to_plane(start + shifts[i], model.z), float(angles[i])) for i in likely[:_MOST_POSES]
+    ]
+
+
+def _align(excess: Array, normals: Array) -> tuple[Array, Array]:
+    """The shift at each of m angles that makes two shapes agree best, (m, 2), and the misfit left, (m,).
+
+    Args:
+        excess: How much farther the one shape reaches than the other, shape (m, n).
+        normals: The directions, shape (n, 2).
+    """
+    shifts = excess @ np.linalg.pinv(normals).T
+    return shifts, np.linalg.norm(excess - shifts @ normals.T, axis=1)
+
+
+def _align_covered(excess: Array, normals: Array) -> tuple[Array, Array]:
+    """The same where a part may be covered: as many directions as possible agree, the others count little.
+
+    From the shift that would agree best if nothing were covered, the shape is pushed to where it agrees in
+    one of eight directions; each time the shift is improved with Geman and McClure's weights.
+    """
+    m, n = excess.shape
+    first, _ = _align(excess, normals)
+    pushed = normals[:: n // _N_PUSHES]
+    short = (excess - first @ normals.T)[:, :: n // _N_PUSHES]
+    shifts = (first[:, None] + short[..., None] * pushed).reshape(-1, 2)
+    excess = np.repeat(excess, len(pushed), axis=0)
+    for _ in range(_N_REWEIGHTINGS):
+        weights = 1.0 / (1.0 + ((excess - shifts @ normals.T) / _AGREEMENT) ** 2) ** 2
+        matrices = np.einsum("mn,ni,nj->mij", weights, normals, normals) + 1e-6 * np.eye(2)
+        pulls = np.einsum("mn,ni->mi", weights * excess, normals)
+        shifts = np.linalg.solve(matrices, pulls[..., None])[..., 0]
+    rest = excess - shifts @ normals.T
+    costs = np.minimum(np.abs(rest), np.where(rest > 0.0, 4.0, 1.0) * _AGREEMENT).sum(axis=1).reshape(m, -1)
+    best = np.argmin(costs, axis=1)
+    return shifts.reshape(m, -1, 2)[np.arange(m), best], costs[np.arange(m), best]
 
 
 def _local_minima(values: Array) -> Array:

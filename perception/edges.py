@@ -15,6 +15,8 @@ _FAR = 0.6  # Share of the reach from where on a sample is well inside or well o
 _LEAST_LIGHT = (
     0.15  # Of object or table, compared with their typical brightness: darker, it is something else.
 )
+_BEYOND = np.array([1.5, 2.5, 3.5])  # Beyond the reach, where no blur brings the object's colour [px].
+_MOST_FOREIGN = 0.05  # Of a colour in the table's place, compared with the table's.
 _LEAST_COVERED = 0.7  # Share of the object well inside its outline, and of the table well outside.
 
 
@@ -26,11 +28,13 @@ class EdgeOffsets:
         offsets: Distance of the edge from the contour, positive outwards [px], shape (n,).
         mixed: Share of the object in the pixel nearest to each point, shape (n,).
         valid: Whether an edge between object and table was found there, shape (n,).
+        empty: Whether the table is seen on both sides, shape (n,); no object can be there.
     """
 
     offsets: Array
     mixed: Array
     valid: NDArray[np.bool_]
+    empty: NDArray[np.bool_]
 
 
 def measure_edges(picture: Picture, mixture: Mixture, contour: Contour, reach: float) -> EdgeOffsets:
@@ -43,19 +47,27 @@ def measure_edges(picture: Picture, mixture: Mixture, contour: Contour, reach: f
         reach: How far to look to either side [px].
     """
     across = np.arange(-reach + _STEP / 2, reach, _STEP)
-    image = mixture.near(picture, contour.pixels, reach)
-    columns, rows = contour.pixels.T[..., None] + contour.normals.T[..., None] * across
-    thing, table = image.between_pixels(columns, rows)
+    image = mixture.near(picture, contour.pixels, reach + _BEYOND[-1])
+    columns, rows = _across(contour, across)
+    thing, table, _ = image.between_pixels(columns, rows)
     inside, outside = across < -_FAR * reach, across > _FAR * reach
-    thing_level, table_level = thing[:, inside].mean(axis=1), table[:, outside].mean(axis=1)
-    light = np.maximum(table_level, _LEAST_LIGHT)
+    light = np.maximum(table[:, outside].mean(axis=1), _LEAST_LIGHT)
     covered = np.clip(1.0 - table / light[:, None], -0.5, 1.5)
-    valid = (
-        (thing_level > _LEAST_LIGHT)
-        & (table_level > _LEAST_LIGHT)
-        & (covered[:, inside].mean(axis=1) > _LEAST_COVERED)
-        & (np.abs(covered[:, outside].mean(axis=1)) < 1.0 - _LEAST_COVERED)
-        & image.holds(columns, rows)
+    within, without = covered[:, inside].mean(axis=1), covered[:, outside].mean(axis=1)
+    on_table = (
+        mixture.foreign(*image.between_pixels(*_across(contour, reach + _BEYOND)).mean(axis=2))
+        < _MOST_FOREIGN
     )
-    mixed = 1.0 - image.at_pixels(contour.pixels)[1] / light
-    return EdgeOffsets(covered.sum(axis=1) * _STEP - reach, mixed, valid)
+    table_outside = on_table & (light > _LEAST_LIGHT) & (np.abs(without) < 1.0 - _LEAST_COVERED)
+    object_inside = (thing[:, inside].mean(axis=1) > _LEAST_LIGHT) & (within > _LEAST_COVERED)
+    return EdgeOffsets(
+        offsets=covered.sum(axis=1) * _STEP - reach,
+        mixed=1.0 - image.at_pixels(contour.pixels)[1] / light,
+        valid=table_outside & object_inside & image.holds(columns, rows),
+        empty=table_outside & (np.abs(within) < 1.0 - _LEAST_COVERED),
+    )
+
+
+def _across(contour: Contour, distances: Array) -> Array:
+    """Columns and rows of places at distances outwards from a contour [px], shape (2, n, m)."""
+    return np.asarray(contour.pixels.T[..., None] + contour.normals.T[..., None] * distances)

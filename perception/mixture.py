@@ -13,21 +13,31 @@ from perception.picture import Picture
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mixture:
-    """A pixel's colour as a mixture of two: ``p O + q T``, with the object's colour O and the table's T.
+    """A pixel's colour as a mixture of two, ``p O + q T + r N``: the object's colour O and the table's T.
 
     The shade of the object's faces goes into p, shadows on the table into q; so a pixel that shows only the
-    object has q = 0 and one that shows only the table p = 0, however the light falls.
+    object has q = 0 and one that shows only the table p = 0, however the light falls. N is at right angles to
+    both and as long as T: r is what belongs to neither.
 
     Attributes:
-        weights: The rows give p and q when multiplied by red, green, blue (0..255), shape (2, 3).
+        weights: The rows give p, q and r when multiplied by red, green, blue (0..255), shape (3, 3).
     """
 
     weights: Array
 
+    def foreign(self, thing: Array, table: Array, neither: Array) -> Array:
+        """How much of colours, given by their shares, is not the table's; of what is; shape (n,)."""
+        colours = np.linalg.inv(self.weights)
+        rest = np.outer(thing, colours[:, 0]) + np.outer(neither, colours[:, 2])
+        tables = np.maximum(table, 1e-3) * np.linalg.norm(colours[:, 1])
+        return np.asarray(np.linalg.norm(rest, axis=1) / tables)
+
     @classmethod
     def of(cls, thing: Array, table: Array) -> "Mixture":
         """For an object and a table of these colours, red, green, blue, shape (3,) each."""
-        return cls(np.linalg.pinv(np.column_stack([thing, table])))
+        neither = np.cross(thing, table)
+        neither *= np.linalg.norm(table) / np.linalg.norm(neither)
+        return cls(np.linalg.inv(np.column_stack([thing, table, neither])))
 
     def near(self, picture: Picture, pixels: Array, reach: float) -> "MixtureImage":
         """The mixture in the part of a picture that is around some places, shape (n, 2)."""
@@ -40,10 +50,10 @@ class Mixture:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MixtureImage:
-    """The shares of object and table in a part of a picture.
+    """The shares of object, table and neither in a part of a picture.
 
     Attributes:
-        shares: p and q, shape (height, width, 2).
+        shares: p, q and r, shape (height, width, 3).
         origin: Column and row of its first pixel in the picture, shape (2,).
         picture_size: Width and height of the picture [px], shape (2,).
     """
@@ -52,18 +62,17 @@ class MixtureImage:
     origin: NDArray[np.int_]
     picture_size: NDArray[np.int_]
 
-    def between_pixels(self, columns: Array, rows: Array) -> tuple[Array, Array]:
-        """Shares p and q, interpolated at places in the picture, shape (n, m) each."""
+    def between_pixels(self, columns: Array, rows: Array) -> Array:
+        """Shares p, q and r, interpolated at places in the picture, shape (3, n, m)."""
         x, y = (columns - self.origin[0]).astype(np.float32), (rows - self.origin[1]).astype(np.float32)
         sampled = cv2.remap(self.shares, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        return np.asarray(sampled[..., 0], dtype=np.float64), np.asarray(sampled[..., 1], dtype=np.float64)
+        return np.asarray(sampled, dtype=np.float64).transpose(2, 0, 1)
 
-    def at_pixels(self, pixels: Array) -> tuple[Array, Array]:
-        """Shares p and q of the pixels nearest to places in the picture, shape (n,) each."""
+    def at_pixels(self, pixels: Array) -> Array:
+        """Shares p, q and r of the pixels nearest to places in the picture, shape (3, n)."""
         height, width = self.shares.shape[:2]
         nearest = np.clip(np.rint(pixels).astype(int) - self.origin, 0, np.array([width, height]) - 1)
-        found = np.asarray(self.shares[nearest[:, 1], nearest[:, 0]], dtype=np.float64)
-        return found[:, 0], found[:, 1]
+        return np.asarray(self.shares[nearest[:, 1], nearest[:, 0]], dtype=np.float64).T
 
     def holds(self, columns: Array, rows: Array) -> NDArray[np.bool_]:
         """Whether the lines of places, shape (n, m), lie within the picture from end to end, shape (n,)."""

@@ -34,12 +34,14 @@ class OutlineFit:
         frame: The pose.
         covariance: Of the errors in x [m], y [m] and angle [rad], shape (3, 3).
         found: Share of the outline where the picture has an edge.
+        empty: Share of the outline on both sides of which the picture shows the table.
         residual: Root mean square distance of the edges from the outline [px].
     """
 
     frame: Frame
     covariance: Array
     found: float
+    empty: float
     residual: float
 
 
@@ -102,7 +104,13 @@ def _finish(seen: _Measurement) -> OutlineFit:
         seen.contour[chosen], jacobian, offsets, stairs=stairs, white=max(residual**2 - stairs, 0.0)
     )
     covariance = np.asarray(np.linalg.inv(information + _RIDGE), dtype=np.float64)
-    return OutlineFit(_moved(seen.frame, covariance @ pull), covariance, float(chosen.mean()), residual)
+    return OutlineFit(
+        _moved(seen.frame, covariance @ pull),
+        covariance,
+        found=float(chosen.mean()),
+        empty=float(seen.edges.empty.mean()),
+        residual=residual,
+    )
 
 
 def _moved(frame: Frame, step: Array) -> Frame:

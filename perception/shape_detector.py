@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
+from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
@@ -16,9 +17,11 @@ from perception.segmentation import Region, Segmentation, segment
 from perception.silhouette import silhouette_hull
 
 _LEAST_AREA, _MOST_AREA = 0.3, 1.7  # Of the expected area; less is covered or something else.
-_LEAST_FOUND = 0.55  # Share of the outline that must be seen.
+_LEAST_FOUND = 0.4  # Share of the outline that must be seen.
+_MOST_EMPTY = 0.08  # Share of the outline where only the table is seen.
 _MOST_RESIDUAL = 1.0  # Root mean square distance of the edges from the outline [px].
-_N_REGIONS, _N_STARTS = 4, 2  # The largest regions and the likeliest poses that are tried.
+_MOST_DEVIATION = 0.003  # Standard deviation of the position that is still worth telling [m].
+_N_REGIONS = 4  # The largest regions are tried.
 _COARSE_SIZE = 8.0  # Least size of an object in the picture in which regions are looked for [px].
 
 
@@ -65,46 +68,63 @@ def _detect_one(
     regions: Sequence[Region],
 ) -> Detection | NotSeen:
     """The best fit among the regions of the object's colour."""
-    fits, reason = [], f"nothing in the picture has the colour of the {model.name}."
-    for region in regions[:_N_REGIONS]:
-        starts = guess_poses(region, model, camera, segmentation.scale, _N_STARTS)
+    tried = [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
+    fits = [result for result in tried if isinstance(result, OutlineFit)]
+    if fits:
+        return _detection(model, camera, max(fits, key=_quality))
+    reasons = [result for result in tried if isinstance(result, str)]
+    return NotSeen(model.name, [*reasons, f"nothing in the picture has the colour of the {model.name}."][0])
+
+
+def _try(
+    picture: Picture, camera: Camera, model: ObjectModel, segmentation: Segmentation, region: Region
+) -> OutlineFit | str:
+    """The best fit to a region, or why there is none; that something is covered is tried last."""
+    mixture = Mixture.of(region.colour, segmentation.table)
+    fault = ""
+    for covered in (False, True):
+        starts = guess_poses(region, model, camera, segmentation.scale, covered=covered)
         expected = cv2.contourArea(silhouette_hull(model, starts[0], camera).astype(np.float32))
         if not _LEAST_AREA * expected < region.area < _MOST_AREA * expected:
-            if region is regions[0]:
-                reason = _wrong_size(model, region, expected)
-            continue
-        mixture = Mixture.of(region.colour, segmentation.table)
-        tried = (fit_outline(picture, camera, model, mixture, start) for start in starts)
-        fit = max((f for f in tried if f is not None), key=_quality, default=None)
-        fault = _fault(model, region, fit)
-        if fit is not None and fault is None:
-            fits.append(fit)
-        elif fault is not None:
-            reason = fault
-    if not fits:
-        return NotSeen(model.name, reason)
-    return _detection(model, camera, max(fits, key=_quality))
+            return (
+                f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
+            )
+        fits = [fit_outline(picture, camera, model, mixture, start) for start in starts]
+        best = max((fit for fit in fits if fit is not None), key=_quality, default=None)
+        fault = _fault(model, camera, region, segmentation.scale, best)
+        if best is not None and not fault:
+            return best
+    return fault
 
 
 def _quality(fit: OutlineFit) -> float:
     return fit.found / (0.1 + fit.residual)
 
 
-def _wrong_size(model: ObjectModel, region: Region, expected: float) -> str:
-    size = f"{100 * region.area / expected:.0f} % of the size of the {model.name}"
-    where = "cut off by the picture's edge" if region.at_border else "covered, or something else"
-    return f"what has its colour has {size}; it is {where}."
+def _where(region: Region) -> str:
+    return "it is cut off by the picture's edge" if region.at_border else "it is covered, or something else"
 
 
-def _fault(model: ObjectModel, region: Region, fit: OutlineFit | None) -> str | None:
-    """Why a fit is not to be believed."""
-    found = 0.0 if fit is None else fit.found
-    if found < _LEAST_FOUND:
-        where = "cut off by the picture's edge" if region.at_border else "covered, or something else"
-        return f"only {100 * found:.0f} % of the outline of the {model.name} is seen; it is {where}."
-    if fit is not None and fit.residual > _MOST_RESIDUAL:
-        return f"what has its colour differs from the {model.name}'s outline by {fit.residual:.1f} px."
-    return None
+def _fault(model: ObjectModel, camera: Camera, region: Region, scale: int, fit: OutlineFit | None) -> str:
+    """Why a fit is not to be believed; empty if it is."""
+    if fit is None or fit.found < _LEAST_FOUND:
+        return f"only {100 * (fit.found if fit else 0.0):.0f} % of its outline is seen; {_where(region)}."
+    if fit.empty > _MOST_EMPTY:
+        return f"the table is seen at {100 * fit.empty:.0f} % of where its outline should be."
+    if fit.residual > _MOST_RESIDUAL:
+        return f"what has its colour differs from its outline by {fit.residual:.1f} px."
+    if np.sqrt(np.linalg.eigvalsh(fit.covariance[:2, :2]).max()) > _MOST_DEVIATION:
+        return f"too little of its outline is seen to tell where it is; {_where(region)}."
+    beyond = _sticks_out(region, silhouette_hull(model, fit.frame, camera))
+    if beyond > scale + _MOST_RESIDUAL:
+        return f"what has its colour sticks out of its outline by {beyond:.0f} px; it is something else."
+    return ""
+
+
+def _sticks_out(region: Region, hull: Array) -> float:
+    """How far a region reaches beyond a convex hull [px]."""
+    polygon = hull.astype(np.float32)
+    return max(-cv2.pointPolygonTest(polygon, (float(u), float(v)), measureDist=True) for u, v in region.hull)
 
 
 def _detection(model: ObjectModel, camera: Camera, fit: OutlineFit) -> Detection:

@@ -58,14 +58,18 @@ def visible_contour(model: ObjectModel, frame: Frame, camera: Camera) -> Contour
     one side only are on its border.
     """
     corners = corners_in_world(model, frame)
-    starts, ends = _edges(len(model.outline))
-    points, directions, edges = _sample_edges(corners[starts], corners[ends], camera)
-    pixels = camera.project(points)
-    normals = np.column_stack([directions[:, 1], -directions[:, 0]])
     seen = camera.project(corners)
-    left, right = (_covers(pixels + side * _ASIDE * normals, seen) for side in (1, -1))
-    border = left != right
-    return Contour(points, pixels, np.where(left[:, None], -normals, normals), edges)[border]
+    starts, ends = _edges(len(model.outline))
+    edges, shares = _places(np.linalg.norm(seen[ends] - seen[starts], axis=1))
+    starts, ends, shares = starts[edges], ends[edges], shares[:, None]
+    directions = seen[ends] - seen[starts]
+    normals = np.column_stack([directions[:, 1], -directions[:, 0]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    chord = seen[starts] + shares * directions  # A lens bends the edge; what is inside is judged without.
+    left, right = (_covers(chord + side * _ASIDE * normals, seen) for side in (1, -1))
+    points = corners[starts] + shares * (corners[ends] - corners[starts])
+    outwards = np.where(left[:, None], -normals, normals)
+    return Contour(points, camera.project(points), outwards, edges)[left != right]
 
 
 def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
@@ -74,17 +78,13 @@ def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     return np.concatenate([around, n + around, around]), np.concatenate([after, n + after, n + around])
 
 
-def _sample_edges(starts: Array, ends: Array, camera: Camera) -> tuple[Array, Array, NDArray[np.int_]]:
-    """Points on edges [m], (n, 3), the edges' directions in the picture, (n, 2), and their numbers, (n,)."""
-    along = camera.project(ends) - camera.project(starts)
-    lengths = np.linalg.norm(along, axis=1)
+def _places(lengths: Array) -> tuple[NDArray[np.int_], Array]:
+    """Points on edges of given lengths [px]: their edge's number and their share of its length, (n,) each."""
     spacing = max(_SPACING, lengths.sum() / _MOST_POINTS)
     counts = np.maximum((lengths - 2 * _CORNER) / spacing, 0.0).astype(int)
-    edge = np.repeat(np.arange(len(counts)), counts)
-    place = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
-    shares = 0.5 + (place - 0.5 * (counts[edge] - 1)) * spacing / lengths[edge]
-    points = starts[edge] + shares[:, None] * (ends - starts)[edge]
-    return points, (along / np.maximum(lengths, 1e-9)[:, None])[edge], edge
+    edges = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return edges, 0.5 + (place - 0.5 * (counts[edges] - 1)) * spacing / lengths[edges]
 
 
 def _covers(pixels: Array, corners: Array) -> NDArray[np.bool_]:
