@@ -67,7 +67,7 @@ def plan_motion(
     above = kinematics.inverse(tool_above(start, task.carry_height, yaw), np.array(robot.home))
     down = line(above, [[*start, task.carry_height], [*start, task.grasp_height]])
     up = down[::-1]
-    carry = line(up[-1], [[*point, task.carry_height] for point in path])
+    carry = kinematics.follow([tool_above(point, task.carry_height, yaw) for point in path], up[-1])
     lower = line(carry[-1], [[*goal, task.carry_height], [*goal, task.release_height]])
     leave = lower[::-1]
     return (
@@ -75,7 +75,7 @@ def plan_motion(
         Stage("descend", _timed(down, limits), open_, False),
         Stage("grasp", JointTrajectory.hold(down[-1], grip_time), closed, True),
         Stage("lift", _timed(up, limits), closed, True),
-        Stage("carry", _timed(carry, limits), closed, True),
+        Stage("carry", _timed_samples(carry, limits), closed, True),
         Stage("lower", _timed(lower, limits), closed, True),
         Stage("release", JointTrajectory.hold(lower[-1], grip_time), open_, False),
         Stage("retreat", _timed(leave, limits), open_, False),
@@ -85,6 +85,11 @@ def plan_motion(
 
 def _timed(waypoints: Array, limits: JointLimits) -> JointTrajectory:
     return time_path(JointPath.through(waypoints), limits)
+
+
+def _timed_samples(waypoints: Array, limits: JointLimits) -> JointTrajectory:
+    """The learnt path is an evenly sampled motion; where it turns back on itself, it slows down to do so."""
+    return time_path(JointPath.through(waypoints, parameters=np.arange(len(waypoints))), limits)
 
 
 def _densify(corners: Array) -> Array:
