@@ -291,7 +291,7 @@ def page(options: argparse.Namespace) -> str:
         intro.format(sets=options.sets, scenes=options.scenes, seed=options.seed),
         "## Finding the frames' kinds (the paper's Tables 1 and 2)\n",
         *identifier_table(options),
-        "Frames that are turned little, or seen badly; Tasks 1-3 mixed, share of runs with both kinds right:\n",
+        "Frames turned little, or seen badly; Tasks 1-3 mixed, share of runs with both kinds right:\n",
         *hard_identifier_table(options),
         "## Smoothness, efficiency, reachability (the paper's Table 4)\n",
         *table_4(options),

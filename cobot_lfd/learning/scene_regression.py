@@ -30,6 +30,8 @@ TOLERANCE = 0.05
 """Of penalties whose scores differ by less, the strongest on roughness is taken."""
 FLOOR = 4e-3
 """Smallest standard deviation that a residual is believed to have, in units of the task's size."""
+END_TRUST = 200.0
+"""How many points' worth the first and the last point are: a pick or a place is where a path is exact."""
 STRAIGHT_ROUNDS = 2
 """How often the penalty on bends is adapted to where the path bends."""
 STRAIGHT_FLOOR = 0.01
@@ -140,11 +142,11 @@ def fit_scene_regression(
     """
     problem = _problem(paths, scenes, features)
     penalty = roughness_penalty(N_FUNCTIONS, roughness.derivative)
-    best = _best(problem, np.full(paths.shape[1], (5 * FLOOR) ** 2), penalty, roughness)
-    best = _best(problem, _residual_variance(best.residuals), penalty, roughness)
+    best = _best(problem, _with_sure_ends(np.full(paths.shape[1], (5 * FLOOR) ** 2)), penalty, roughness)
+    best = _best(problem, _with_sure_ends(_residual_variance(best.residuals)), penalty, roughness)
     for _ in range(STRAIGHT_ROUNDS if roughness.adaptive else 0):
         penalty = _adapted_penalty(best.coefficients, roughness.derivative)
-        best = _best(problem, _residual_variance(best.residuals), penalty, roughness)
+        best = _best(problem, _with_sure_ends(_residual_variance(best.residuals)), penalty, roughness)
     n_vectors = problem.vectors.shape[2]
     moments = problem.moments.sum(axis=0) + max(best.size_weight, 1e-3) * np.eye(n_vectors)
     return SceneRegression(
@@ -210,6 +212,13 @@ def _adapted_penalty(coefficients: Array, derivative: int) -> Array:
     rough = gaussian_filter1d(rough, 0.02 * len(rough), mode="nearest")
     weights = 1.0 / (rough + STRAIGHT_FLOOR * rough.mean() + np.finfo(float).tiny)
     return roughness_penalty(N_FUNCTIONS, derivative, weights / weights.mean())
+
+
+def _with_sure_ends(variance: Array) -> Array:
+    """The variance with more weight on the very ends, which no other point holds in place."""
+    sure = variance.copy()
+    sure[[0, -1]] /= END_TRUST
+    return sure
 
 
 def _residual_variance(residuals: Array) -> Array:

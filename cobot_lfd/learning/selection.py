@@ -1,20 +1,22 @@
-"""Which frames the task needs: the fewest that predict left-out demonstrations as well as any."""
+"""Which frames the task needs: those it visits, and the fewest more that predict left-out demonstrations."""
 
 from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
+from scipy.stats import t as student
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.course import held_out_errors
+from cobot_lfd.learning.course import held_out_errors, task_size
 from cobot_lfd.learning.data import TaskData
 
 EXHAUSTIVE = 4
 """Up to so many frames, all their sets are tried; beyond, one frame at a time is dropped."""
 
-STANDARD_ERRORS = 2.0
-"""A set is as good as the best if the paired difference is within so many standard errors: a frame that
-matters makes a difference of many, one that does not seldom of two."""
+CONFIDENCE = 0.975
+"""A set is worse than the best if a paired t-test says so at this level (one-sided)."""
+VISITED = 0.06
+"""A frame that every demonstration passes within this part of the task's size matters, whatever else."""
 
 
 def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
@@ -30,6 +32,7 @@ def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
     n_frames = len(data.names)
     if n_frames < 3 or len(data.paths) < 3:
         return list(range(n_frames))
+    visited = _visited(data)
     errors: dict[tuple[int, ...], Array] = {}
 
     def error_of(frames: tuple[int, ...]) -> Array:
@@ -42,12 +45,13 @@ def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
     if n_frames <= EXHAUSTIVE:
         for size in range(1, n_frames + 1):
             for tried in combinations(range(n_frames), size):
-                error_of(tried)
+                if visited <= set(tried):
+                    error_of(tried)
     else:
         kept = tuple(range(n_frames))
-        while len(kept) > 1:
-            error_of(kept)
-            fewer: list[tuple[int, ...]] = list(combinations(kept, len(kept) - 1))
+        error_of(kept)
+        while len(kept) > max(len(visited), 1):
+            fewer = [tuple(j for j in kept if j != out) for out in kept if out not in visited]
             kept = min(fewer, key=lambda group: error_of(group).mean())
     mean = {group: float(error.mean()) for group, error in errors.items()}
     best = min(mean, key=mean.__getitem__)
@@ -55,7 +59,14 @@ def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
     return list(min(good)[2])
 
 
+def _visited(data: TaskData) -> set[int]:
+    """The frames that every demonstration passes closely."""
+    nearest = np.linalg.norm(data.local, axis=-1).min(axis=-1).max(axis=0)
+    return {int(j) for j in np.flatnonzero(nearest < VISITED * task_size(data))}
+
+
 def _as_good(candidate: Array, best: Array) -> bool:
-    """Whether the paired difference is within the allowed standard errors."""
+    """Whether a paired t-test finds no difference."""
     difference = candidate - best
-    return bool(difference.mean() <= STANDARD_ERRORS * difference.std(ddof=1) / np.sqrt(len(difference)))
+    n = len(difference)
+    return bool(difference.mean() <= student.ppf(CONFIDENCE, n - 1) * difference.std(ddof=1) / np.sqrt(n))
