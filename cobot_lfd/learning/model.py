@@ -56,6 +56,7 @@ class TaskParameterisedGMM:
         notes: What was chosen while fitting, in sentences.
         duration: Median duration of the demonstrations [s].
         dimension: 2 for planar tasks, 3 for spatial ones.
+        method: Name of the method that fitted it; "custom" where settings of one's own were given.
     """
 
     findings: tuple[Finding, ...]
@@ -64,6 +65,7 @@ class TaskParameterisedGMM:
     notes: tuple[str, ...]
     duration: float
     dimension: int
+    method: str
 
     @classmethod
     def fit(
@@ -103,6 +105,7 @@ class TaskParameterisedGMM:
             tuple(learnt.notes),
             learnt.duration,
             learnt.dimension,
+            method if settings is None else "custom",
         )
 
     @property
