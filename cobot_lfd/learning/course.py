@@ -24,9 +24,11 @@ UNIT = 2.5
 """The task's size is this multiple of the paths' root mean square extent: about a straight path's length."""
 REACHES = (0.3, None)
 """How far from a landmark the way alone counts (see ``phase``); None tells the path by time."""
+PHASE_TOLERANCE = 0.95
+"""A simpler way of telling phase must predict better by this factor to be taken."""
 JERK_WEIGHTS = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 2e-6)
 """Penalties on a generated path's jerk that are tried."""
-JERK_TOLERANCE = 0.04
+JERK_TOLERANCE = 0.025
 """The strongest smoothing is taken that raises the held-out error by less than this part ..."""
 JERK_SHIFT = 3.0
 """... and moves the path by less than this many standard deviations of the place, nearly everywhere, ..."""
@@ -179,7 +181,7 @@ def _best_phases(
         progress = common_progress(data.paths, phases.shares, regression.predict(data.scenes))
         course = follow(_held_out_ways(phases, regression), progress.mean)
         error = _distance(course, data).mean()
-        if best is None or error < best[0]:
+        if best is None or error < PHASE_TOLERANCE * best[0]:
             best = error, reach, phases, regression, progress
     if best is None:
         raise ValueError("there is no way to tell phase.")

@@ -54,7 +54,7 @@ def learn(
     """
     mixtures = settings.generator is Generator.PRODUCT and settings.encode is Encode.MIXTURE
     data = collect(demonstrations, None if mixtures else MAX_STEPS)
-    findings = _with_known_kinds(_identify(data, settings, rng), settings)
+    findings = _with_known_kinds(identify(data, settings, rng), settings)
     oriented = [finding.kind is FrameKind.ORIENTED for finding in findings]
     used = select_frames(data, oriented) if settings.select_frames else list(range(len(data.names)))
     kept = data.take(used)
@@ -62,8 +62,14 @@ def learn(
     return Learnt(findings, kept.names, generator, notes, data.duration, data.paths.shape[-1])
 
 
-def _identify(data: TaskData, settings: LearningSettings, rng: np.random.Generator) -> list[Finding]:
-    """Each frame's kind by the chosen test."""
+def identify(data: TaskData, settings: LearningSettings, rng: np.random.Generator) -> list[Finding]:
+    """Each frame's kind by the chosen test.
+
+    Args:
+        data: The demonstrations.
+        settings: Which test, with its thresholds.
+        rng: For k-means initialisation only.
+    """
     if settings.identifier is Identifier.BEARING:
         return identify_by_bearing(data, settings.bearing)
     if settings.identifier is Identifier.ALL_ORIENTED or len(data.names) == 1:
