@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from tyro.extras import subcommand_cli_from_dict
 
 from cobot_lfd.app.commands.demo import demo
+from cobot_lfd.app.commands.demos import demos
 from cobot_lfd.app.commands.evaluate import evaluate
 from cobot_lfd.app.commands.exit_codes import FAILED, INTERRUPTED
 from cobot_lfd.app.commands.fit import fit
@@ -17,6 +18,7 @@ from cobot_lfd.errors import CobotError
 _COMMANDS: dict[str, Callable[..., int]] = {
     "demo": demo,
     "record": record,
+    "demos": demos,
     "fit": fit,
     "run": run,
     "evaluate": evaluate,

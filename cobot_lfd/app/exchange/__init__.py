@@ -1,0 +1,1 @@
+"""Demonstrations from elsewhere and for elsewhere: other file layouts, read and written."""
