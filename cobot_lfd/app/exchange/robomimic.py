@@ -1,7 +1,8 @@
 """Episodes in the layout of robomimic's HDF5 data sets.
 
 ``data/demo_<k>`` holds ``actions``, ``states``, ``rewards``, ``dones``, ``obs/<name>`` and
-``next_obs/<name>``. The attributes ``num_samples`` and ``total`` count; ``env_args`` says in JSON what the environment was.
+``next_obs/<name>``. The attributes ``num_samples`` and ``total`` count;
+``env_args`` says in JSON what the environment was.
 """
 
 import io
