@@ -1,6 +1,7 @@
 """Pictures of the simulated scene: what its camera would see."""
 
 import importlib.util
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -13,6 +14,7 @@ from cobot_lfd.camera import Camera
 from cobot_lfd.errors import CobotError
 from cobot_lfd.quiet import quiet_output
 from scenes.imperfections import ideal_camera, on_sensor, through_lens
+from scenes.prints import Print, draw_prints
 from scenes.view import CameraDescription, Lens, Light, Sensor
 
 Picture = NDArray[np.uint8]
@@ -26,6 +28,7 @@ _GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
 
 _LARGEST_EGL = (1024, 768)  # Larger pictures it only magnifies [px].
 
+_PRINT_SAMPLES = 3  # Rays along each side of a pixel that shows a print.
 _NEAR, _FAR = 0.05, 10.0  # What is nearer to or farther from the camera is not drawn [m].
 
 
@@ -50,6 +53,7 @@ def take_picture(
     light: Light,
     renderer: Renderer,
     generator: np.random.Generator,
+    prints: Sequence[Print] = (),
 ) -> Picture:
     """What a camera sees now.
 
@@ -59,6 +63,7 @@ def take_picture(
         light: The light.
         renderer: What draws; it must be the one that the client was made ready for.
         generator: Where the sensor's noise comes from.
+        prints: Flat prints that are in the scene.
 
     Returns:
         Red, green, blue, shape (height, width, 3).
@@ -76,6 +81,7 @@ def take_picture(
     shifts = sample_pattern(seen.samples) + _GRID_OFFSET[renderer]
     shots = [_shoot(client, ideal, shift, light, renderer) for shift in shifts]
     picture = shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
+    picture = draw_prints(picture, ideal, prints, _PRINT_SAMPLES)
     if seen.lens == Lens() and seen.sensor == Sensor():
         return picture
     return on_sensor(through_lens(picture, ideal, camera, seen.lens), seen.sensor, generator)

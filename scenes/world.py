@@ -1,6 +1,6 @@
 """A scene in the simulator, built from its description and a seed; the same two give the same world."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType, TracebackType
 from typing import Self
 
@@ -15,6 +15,7 @@ from cobot_lfd.quiet import quiet_output
 from scenes.bodies import add_object, add_table, object_pose, place_object
 from scenes.description import SceneDescription
 from scenes.placement import draw_placements
+from scenes.prints import Print
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
 from scenes.view import CameraDescription, Light
 
@@ -79,7 +80,12 @@ class World:
         self._n_steps += 1
 
     def take_picture(
-        self, *, covered: bool = False, camera: CameraDescription | None = None, light: Light | None = None
+        self,
+        *,
+        covered: bool = False,
+        camera: CameraDescription | None = None,
+        light: Light | None = None,
+        prints: Sequence[Print] = (),
     ) -> Picture:
         """What a camera sees now.
 
@@ -87,12 +93,13 @@ class World:
             covered: Whether something covers the lens; the picture is then black.
             camera: The camera; the scene's own by default.
             light: The light; the scene's own by default.
+            prints: Flat prints that are in the scene.
 
         Returns:
             Red, green, blue, shape (height, width, 3).
         """
         camera, light = camera or self.description.camera, light or self.description.light
-        picture = take_picture(self.client, camera, light, self._renderer, self._sensor_noise)
+        picture = take_picture(self.client, camera, light, self._renderer, self._sensor_noise, prints)
         return np.zeros_like(picture) if covered else picture
 
     def place(self, name: str, frame: Frame) -> None:
