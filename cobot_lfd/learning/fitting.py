@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cobot_lfd.errors import DataError
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning.course import Course, fit_course
 from cobot_lfd.learning.criteria import fulfilled
@@ -50,10 +51,13 @@ def learn(
         rng: For k-means initialisation only.
 
     Raises:
+        DataError: If the frames differ by name, or nothing moves.
         ValueError: If a frame is named whose kind is known, and there is none.
     """
     mixtures = settings.generator is Generator.PRODUCT and settings.encode is Encode.MIXTURE
     data = collect(demonstrations, None if mixtures else MAX_STEPS)
+    if data.scale <= np.finfo(float).eps * max(1.0, float(np.abs(data.paths).max())):
+        raise DataError("no demonstration moves; record paths that go somewhere.")
     findings = _with_known_kinds(identify(data, settings, rng), settings)
     oriented = [finding.kind is FrameKind.ORIENTED for finding in findings]
     used = select_frames(data, oriented) if settings.select_frames else list(range(len(data.names)))

@@ -175,6 +175,8 @@ def _best(problem: _Problem, variance: Array, penalty: Array, roughness: Roughne
         for rough in roughness.weights
         for size in SIZE_WEIGHTS
     ]
+    if len(problem.vectors) == 1:
+        return candidates[0]  # With nothing to leave out, the one demonstration is followed.
     limit = min(candidate.score for candidate in candidates) + TOLERANCE
     return max((c for c in candidates if c.score <= limit), key=lambda c: (c.rough_weight, -c.score))
 
