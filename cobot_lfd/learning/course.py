@@ -8,7 +8,7 @@ import numpy as np
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import Scenes, TaskData
 from cobot_lfd.learning.features import FeatureSet
-from cobot_lfd.learning.phase import Phases, Progress, by_phase, common_progress, follow, way_travelled
+from cobot_lfd.learning.phase import Phases, Progress, by_phase, common_progress, follow
 from cobot_lfd.learning.scene_regression import (
     MINIMUM_JERK,
     STRAIGHT_PARTS,
@@ -65,8 +65,11 @@ class Course:
     def generate(self, scenes: Scenes, n_steps: int) -> tuple[Array, Array]:
         """Means [m], shape (S, T, d), and covariances [m²], shape (S, T, d, d)."""
         way = self.regression.predict(scenes)
-        mean = read(self.coefficients @ follow(way, self.progress.mean), n_steps)
-        return mean, self._covariance(scenes, way, mean)
+        d = way.shape[-1]
+        variance = np.broadcast_to(self.regression.variance[:, None], (*way.shape[:2], 1))
+        course = follow(way, self.progress.mean, np.concatenate([way, variance], axis=-1))
+        mean = read(self.coefficients @ course[..., :d], n_steps)
+        return mean, self._covariance(scenes, course[..., d], mean)
 
     def notes(self) -> list[str]:
         """What was chosen, in sentences."""
@@ -81,19 +84,29 @@ class Course:
             f"on size {self.regression.size_weight:g}, on the jerk of generated paths {self.jerk_weight:g}.",
         ]
 
-    def _covariance(self, scenes: Scenes, way: Array, mean: Array) -> Array:
-        """What the place leaves open, more so in unlike scenes, and along the path what the timing does."""
-        times = np.linspace(0, 1, mean.shape[1])
-        grid = np.linspace(0, 1, len(self.progress.mean))
-        places = np.broadcast_to(self.regression.variance[:, None], (*way.shape[:2], 1))
-        at_place = follow(way, np.interp(times, grid, self.progress.mean), places)
-        length = way_travelled(way)[:, -1]
-        motion = np.gradient(mean, axis=1)
-        speed = np.sqrt((motion**2).sum(axis=-1, keepdims=True)) + 1e-6 * length[:, None, None]
-        timing = np.interp(times, grid, self.progress.spread)[:, None] * length[:, None, None]
-        ahead = motion / speed * timing
+    def _covariance(self, scenes: Scenes, at_place: Array, mean: Array) -> Array:
+        """What the place leaves open, more so in unlike scenes, and along the path what the timing does.
+
+        Args:
+            scenes: The scenes.
+            at_place: Variance at the place of each time of the grid [m²], shape (S, T').
+            mean: The generated paths, shape (S, T, d).
+        """
+        n_steps = mean.shape[1]
+        times, grid = np.linspace(0, 1, n_steps), np.linspace(0, 1, at_place.shape[1])
+        if n_steps != len(grid):
+            low = np.minimum((times * (len(grid) - 1)).astype(int), len(grid) - 2)
+            part = times * (len(grid) - 1) - low
+            at_place = at_place[:, low] * (1 - part) + at_place[:, low + 1] * part
+        motion = np.empty_like(mean)
+        motion[:, 1:-1] = mean[:, 2:] - mean[:, :-2]
+        motion[:, 0], motion[:, -1] = 2 * (mean[:, 1] - mean[:, 0]), 2 * (mean[:, -1] - mean[:, -2])
+        speed = np.sqrt(np.einsum("std,std->st", motion, motion))
+        length = speed.sum(axis=1, keepdims=True) / 2
+        timing = np.interp(times, grid, self.progress.spread) * length
+        ahead = motion * (timing / (speed + 1e-6 * length + np.finfo(float).tiny))[..., None]
         spread = self.regression.spread(scenes)[:, None]
-        return np.asarray(at_place[..., None] * spread + ahead[..., :, None] * ahead[..., None, :])
+        return np.asarray(at_place[..., None, None] * spread + ahead[..., :, None] * ahead[..., None, :])
 
 
 @dataclass(frozen=True, slots=True)

@@ -150,8 +150,7 @@ class TaskParameterisedGMM:
         if not scenes:
             return []
         means, covariances = self.generate(stack_scenes(scenes, self.used_frames), n_steps)
-        times = np.linspace(0.0, self.duration, n_steps)
-        return [GeneratedPath(m, c, times) for m, c in zip(means, covariances, strict=True)]
+        return GeneratedPath.batch(means, covariances, np.linspace(0.0, self.duration, n_steps))
 
     def generate(self, scenes: Scenes, n_steps: int = 200) -> tuple[Array, Array]:
         """Many paths as arrays.

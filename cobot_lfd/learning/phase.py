@@ -171,17 +171,20 @@ def follow(paths: Array, progress: Array, carried: Array | None = None) -> Array
     s, u, _ = paths.shape
     way = way_travelled(paths)
     length = way[:, -1:]
-    shares = np.where(length > 0, way / np.where(length > 0, length, 1.0), np.linspace(0, 1, u))
+    stands = length <= 0
+    shares = way / np.where(stands, 1.0, length)
+    if stands.any():
+        shares = np.where(stands, np.linspace(0, 1, u), shares)
     # One search for all scenes: scene i's shares are moved to [2 i, 2 i + 1].
     offsets = 2.0 * np.arange(s)[:, None]
-    wanted = (progress + offsets).ravel()
     known = (shares + offsets).ravel()
     first = np.arange(s)[:, None] * u
-    found = np.searchsorted(known, wanted).reshape(s, -1)
+    found = np.searchsorted(known, (progress + offsets).ravel()).reshape(s, -1)
     right = np.clip(found, first + 1, first + u - 1).ravel()
-    step = known[right] - known[right - 1]
-    share = np.where(step > 0, (wanted - known[right - 1]) / np.where(step > 0, step, 1.0), 0.0)
-    share = np.clip(share, 0.0, 1.0)[:, None]
-    table = paths if carried is None else carried
-    flat = table.reshape(s * u, -1)
-    return np.asarray(flat[right - 1] * (1 - share) + flat[right] * share).reshape(s, len(progress), -1)
+    left = shares.ravel()[right - 1]
+    step = shares.ravel()[right] - left
+    part = (np.tile(progress, s) - left) / np.maximum(step, np.finfo(float).tiny)
+    part = np.clip(part, 0.0, 1.0)[:, None]
+    table = (paths if carried is None else carried).reshape(s * u, -1)
+    before = table[right - 1]
+    return np.asarray(before + (table[right] - before) * part).reshape(s, len(progress), -1)
