@@ -231,13 +231,16 @@ def spoiler(
     lens = Lens(blur=generator.uniform(0.0, 1.5)) if condition.vary_sensor else Lens()
     sensor = varied_sensor(generator) if condition.vary_sensor else Sensor()
     cover = np.zeros((camera.height, camera.width), dtype=bool)
-    for model in models:
-        cover |= cover_mask(camera, model, frames[model.name], condition.covered, generator)
+    if condition.covered > 0.0:
+        for model in models:
+            cover |= cover_mask(camera, model, frames[model.name], condition.covered, generator)
     grey, seed = generator.integers(60, 200), int(generator.integers(2**31))
     straight = replace(camera, distortion=np.zeros(5))  # The picture is bent already.
 
     def spoil(picture: Picture) -> Picture:
         covered = np.where(cover[..., None], grey, picture).astype(np.uint8)
+        if not condition.vary_sensor:
+            return covered
         return on_sensor(through_lens(covered, straight, straight, lens), sensor, np.random.default_rng(seed))
 
     return spoil
@@ -264,7 +267,7 @@ def cover_mask(
     inside = Polygon(hull).contains_points(pixels.reshape(-1, 2)).reshape(along.shape)
     centre = hull.mean(axis=0)
     near = np.linalg.norm(pixels - centre, axis=-1) < 1.3 * np.linalg.norm(hull - centre, axis=1).max()
-    return np.asarray(near & (along > np.quantile(along[inside], 1.0 - share)) & (share > 0.0))
+    return np.asarray(near & (along > np.quantile(along[inside], 1.0 - share)))
 
 
 if __name__ == "__main__":
