@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from cobot_lfd.frame import FrameKind as FrameKind
     from cobot_lfd.learning.model import TaskParameterisedGMM as TaskParameterisedGMM
     from cobot_lfd.learning.path import GeneratedPath as GeneratedPath
+    from cobot_lfd.method import Method as Method
+    from cobot_lfd.method import Reproducer as Reproducer
     from cobot_lfd.pose import Pose as Pose
 
 _HOMES = {
@@ -17,7 +19,9 @@ _HOMES = {
     "Frame": "cobot_lfd.frame",
     "FrameKind": "cobot_lfd.frame",
     "GeneratedPath": "cobot_lfd.learning.path",
+    "Method": "cobot_lfd.method",
     "Pose": "cobot_lfd.pose",
+    "Reproducer": "cobot_lfd.method",
     "SpatialDemonstration": "cobot_lfd.demonstration",
     "TaskParameterisedGMM": "cobot_lfd.learning.model",
 }

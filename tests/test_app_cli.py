@@ -35,7 +35,7 @@ def test_the_four_steps(
     captured = capsys.readouterr()
     summary = json.loads(captured.out)
     assert (summary["episodes"], summary["successes"], summary["success_rate"]) == (2, 2, 1.0)
-    assert "evaluating 2/2: seed 1001" in captured.err
+    assert "evaluating 2/2: model.npz, seed 100" in captured.err
 
 
 def test_an_episode_that_fails_gives_exit_code_1(

@@ -11,7 +11,7 @@ from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluate import Job, bench_for
 from cobot_lfd.app.plan import Stage, plan_motion
 from cobot_lfd.frame import Frame
-from cobot_lfd.learning.model import TaskParameterisedGMM
+from cobot_lfd.method import PathModel
 from cobot_lfd.motion import check_limits
 from cobot_lfd.outcome import Outcome
 from robots import Kinematics, load_robot
@@ -110,7 +110,7 @@ class PathTo:
 
     method = "test"
 
-    def __init__(self, model: TaskParameterisedGMM, goal: Frame) -> None:
+    def __init__(self, model: PathModel, goal: Frame) -> None:
         self.frame_kinds = model.frame_kinds
         self._model = model
         self._goal = goal

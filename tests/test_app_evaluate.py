@@ -1,68 +1,261 @@
-"""Evaluation: a result depends on its seed only, and nothing that happens in an episode ends the batch."""
+"""Evaluation of real episodes: a result depends on its trial only; options say what is tried."""
 
-import json
-from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
-import cobot_lfd.app.evaluate as evaluation
-from cobot_lfd.app.evaluate import Job, evaluate
-from cobot_lfd.app.results import EpisodeResult
-from cobot_lfd.app.run_folder import PROVENANCE, RESULTS, SUMMARY, evaluate_into
-from cobot_lfd.errors import DataError, DescriptionError, ModelError
+from cobot_lfd.app.evaluation.contender import Contender, fit_method, learnt
+from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_from_bytes, demonstrations_to_bytes
+from cobot_lfd.app.evaluation.measures import hand_path, measures_beside
+from cobot_lfd.app.evaluation.options import PlanOptions
+from cobot_lfd.app.evaluation.perform import bench_of, film, perform
+from cobot_lfd.app.evaluation.perturbation import Perturbation, Sweep
+from cobot_lfd.app.evaluation.plan import Plan
+from cobot_lfd.app.evaluation.run import Where, run
+from cobot_lfd.app.perceive import View
+from cobot_lfd.app.provenance import Provenance
+from cobot_lfd.app.run_folder import RunFolder
+from cobot_lfd.app.store import load_demonstrations, load_episode
+from cobot_lfd.errors import CobotError, DataError, DescriptionError, ModelError
 from cobot_lfd.outcome import Outcome
+from scenes import load_scene
+from tests.app_examples import detection
+from tests.evaluation_examples import sweep_demonstrations
 
 pytestmark = pytest.mark.simulator
 
-SEEDS = range(1000, 1003)
+SCENE = load_scene("pick_and_place")
 
 
 @pytest.fixture(scope="module")
-def job(model_file: Path) -> Job:
-    return Job("pick_and_place", "panda", model_file)
+def plan(model_file: Path, demonstrations_folder: Path) -> Plan:
+    """A good and a bad contender in one scene: two trials."""
+    options = PlanOptions(
+        models=(model_file,),
+        scene=("pick_and_place",),
+        method=("world-gmr",),
+        demos=demonstrations_folder,
+        episodes=1,
+        seed=1000,
+    )
+    return options.plan()
 
 
-def lines(results: Iterable[EpisodeResult]) -> list[str]:
-    return [result.comparable_json() for result in results]
+@pytest.fixture(scope="module")
+def folder(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """The plan, run in two processes."""
+    path = tmp_path_factory.mktemp("evaluation") / "run"
+    folder = RunFolder.create(path, plan, Provenance.collect(seeds=plan.seeds, options={}))
+    run(folder, Where(workers=2))
+    return folder
 
 
-def test_results_do_not_depend_on_the_number_of_workers(job: Job) -> None:
-    here = lines(evaluate(job, SEEDS))
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
-        assert lines(evaluate(job, SEEDS, executor=executor)) == here
-    assert lines(evaluate(job, SEEDS[-1:])) == here[-1:]
+def test_results_do_not_depend_on_where_episodes_run(folder: RunFolder) -> None:
+    here = [perform(trial).result.comparable_json() for trial in reversed(list(folder.plan.trials()))]
+    assert [result.comparable_json() for result in folder.results()] == here[::-1]
 
 
-def test_a_fault_in_one_episode_does_not_end_the_others(job: Job, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(_: object, seed: int) -> EpisodeResult:
-        raise ZeroDivisionError(f"at {seed}")
-
-    monkeypatch.setattr(evaluation, "run_episode", fail)
-    results = list(evaluate(job, SEEDS))
-    assert [result.verdict.outcome for result in results] == [Outcome.INTERNAL_ERROR] * 3
-    assert results[1].verdict.detail == "ZeroDivisionError: at 1001"
+def test_the_contenders_are_told_apart(folder: RunFolder) -> None:
+    good, bad = folder.results()
+    assert (good.contender, good.verdict.outcome) == ("model.npz", Outcome.SUCCESS)
+    assert (bad.contender, bad.verdict.succeeded) == ("world-gmr", False)
+    assert good.metrics["d_end"] < 0.02 < bad.metrics["d_end"]  # [m]
+    assert (good.metrics["reachability"], bad.metrics["reachability"]) == (100.0, 0.0)
 
 
-def test_a_run_folder_holds_a_line_per_episode_and_its_summary(job: Job, tmp_path: Path) -> None:
-    summary = evaluate_into(tmp_path / "run", job, SEEDS[:2])
-    kept = [json.loads(line) for line in (tmp_path / "run" / RESULTS).read_text().splitlines()]
-    assert [line["seed"] for line in kept] == [1000, 1001]
-    assert json.loads((tmp_path / "run" / SUMMARY).read_text())["episodes"] == 2
-    assert json.loads((tmp_path / "run" / PROVENANCE).read_text())["seeds"] == [1000, 1001]
-    assert summary.successes == sum(line["success"] for line in kept)
+def test_an_episode_can_be_filmed(plan: Plan) -> None:
+    """Even one that ends before the arm moves has a picture."""
+    trial = replace(plan.trial(0), perturbation=Perturbation(covered=True))
+    assert film(trial).startswith(b"\x1aE\xdf\xa3")  # how a WebM file begins
 
 
-def test_results_are_never_overwritten(job: Job, tmp_path: Path) -> None:
-    (tmp_path / RESULTS).write_text("")
-    with pytest.raises(DataError, match=r"holds the results of an evaluation already; choose another folder"):
-        evaluate_into(tmp_path, job, SEEDS)
+def test_trials_are_the_cross_product_and_their_seeds_vary_slowest() -> None:
+    contenders = tuple(Contender(name, "line", b"") for name in "ab")
+    perturbations = Sweep(detection_noise_mm=(0.0, 5.0), friction=(1.0, 0.5)).perturbations()
+    trials = list(
+        Plan.of(
+            scenes=("pick_and_place",),
+            robots=("panda",),
+            contenders=contenders,
+            perturbations=perturbations,
+            seeds=range(3),
+        ).trials()
+    )
+    assert len(trials) == len(set(trials)) == 2 * 4 * 3
+    assert [trial.number for trial in trials] == list(range(24))
+    assert [trial.seed for trial in trials] == sorted(trial.seed for trial in trials)
 
 
-def test_what_is_missing_is_told_before_the_first_episode(job: Job, tmp_path: Path) -> None:
-    with pytest.raises(DescriptionError, match="no scene named 'nowhere'"):
-        next(evaluate(Job("nowhere", "panda", job.model), SEEDS))
-    with pytest.raises(ModelError, match=r"none\.npz"):
-        next(evaluate(Job("pick_and_place", "panda", tmp_path / "none.npz"), SEEDS))
+def test_a_run_is_known_by_all_that_decides_its_results(plan: Plan) -> None:
+    changes: list[dict[str, Any]] = [
+        {"seeds": range(1000, 1002)},
+        {"perturbations": (Perturbation(friction=0.5),)},
+        {"contenders": (replace(plan.contenders[0], content=b"other"), plan.contenders[1])},
+        {"fingerprints": {"scene pick_and_place": "other"}},
+    ]
+    assert len({plan.run, *(replace(plan, **change).run for change in changes)}) == 5
+    assert replace(plan).run == plan.run
+
+
+def test_demonstrations_keep_every_bit(demonstrations_folder: Path) -> None:
+    before = load_demonstrations(demonstrations_folder)
+    after = demonstrations_from_bytes(demonstrations_to_bytes(before))
+    assert demonstrations_to_bytes(after) == demonstrations_to_bytes(before)
+    assert_allclose(after[3].path, before[3].path, rtol=0, atol=0)
+
+
+def test_the_hand_in_the_measures_is_the_hand_that_demonstrates(demonstrations_folder: Path) -> None:
+    """The recorded path follows what the hand wants, as closely as a compliant arm can."""
+    episode = load_episode(demonstrations_folder / "episode_000000.h5")
+    frames = {seen.name: seen.frame for seen in episode.detections}
+    wanted = hand_path(SCENE, frames, episode.seed)
+    recorded = episode.demonstration().path
+    wanted = wanted[np.linspace(0, len(wanted) - 1, len(recorded)).round().astype(int)]
+    assert np.linalg.norm(recorded - wanted, axis=1).max() < 0.02  # [m]
+
+
+def test_a_path_beside_itself_is_reached_and_nowhere_apart() -> None:
+    path = np.column_stack([np.linspace(0.0, 1.0, 50), np.zeros(50)])
+    measures = measures_beside(path, path)
+    assert measures["d_total"] == measures["sharp_edges"] == measures["turns"] == 0.0
+    assert (measures["reachability"], measures["efficiency"]) == (100.0, 1.0)
+    shifted = measures_beside(path + np.array([0.0, 0.04]), path)
+    assert_allclose([shifted["d_total"], shifted["d_start"], shifted["d_end"]], 0.04)
+    half = measures_beside(np.vstack([path[:25], path[:25] + 1.0]), path)
+    assert half["reachability"] == 50.0
+
+
+@pytest.mark.parametrize("method", ["line", "dmp", "world-gmr", "improved", "conventional"])
+def test_every_method_learns_and_leads(method: str) -> None:
+    demonstrations = sweep_demonstrations()
+    model = fit_method(method, demonstrations)
+    path = model.reproduce(demonstrations[0].frames).mean
+    assert path.shape == (len(path), 2)
+    assert np.isfinite(path).all()
+    assert_allclose(model.reproduce(demonstrations[0].frames).mean, path, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("method", ["line", "dmp"])
+def test_baselines_with_frames_reach_start_and_end(method: str) -> None:
+    demonstrations = sweep_demonstrations()
+    frames = sweep_demonstrations(6)[-1].frames
+    path = fit_method(method, demonstrations).reproduce(frames).mean
+    assert_allclose(path[0], frames["a"].apply([0.05, 0.0]), atol=0.03)  # [m]
+    assert_allclose(path[-1], frames["b"].position, atol=0.03)  # [m]
+
+
+class Unreliable:
+    """Somebody's method, with an fit that returns nothing and a reproduce that fails."""
+
+    def fit(self, _: object) -> None:
+        """Learn nothing."""
+
+    def reproduce(self, _: object) -> list[float]:
+        """Return what is no path."""
+        return [1.0, 2.0]
+
+
+def test_somebodys_method_is_found_and_its_faults_are_those_of_a_model() -> None:
+    demonstrations = sweep_demonstrations()
+    model = fit_method("tests.test_app_evaluate:Unreliable", demonstrations)
+    with pytest.raises(
+        ModelError, match=r"Unreliable raised ValueError: reproduce returned an array of shape"
+    ):
+        model.reproduce(demonstrations[0].frames)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("imroved", "no method named 'imroved'; choose one of: improved, paper"),
+        ("nowhere.at_all:Method", "cannot find the method 'nowhere.at_all:Method'"),
+        ("tests.test_app_evaluate:SCENE", "has no fit"),
+    ],
+)
+def test_a_method_that_is_none_is_told(name: str, message: str) -> None:
+    with pytest.raises(ModelError, match=message):
+        fit_method(name, sweep_demonstrations())
+
+
+def test_the_number_of_demonstrations_is_a_perturbation() -> None:
+    contender = Contender("line", "line", demonstrations_to_bytes(sweep_demonstrations()))
+    few = learnt(contender, 2).reproduce(sweep_demonstrations()[0].frames).mean
+    assert not np.allclose(few, learnt(contender).reproduce(sweep_demonstrations()[0].frames).mean)
+    with pytest.raises(DataError, match="6 demonstrations are to be used and there are 5"):
+        learnt(contender, 6)
+    with pytest.raises(DataError, match="is fitted already"):
+        learnt(Contender("model.npz", None, b""), 3)
+
+
+def test_a_perturbed_scene_differs_where_it_was_asked_to() -> None:
+    assert Perturbation().of_scene(SCENE) == SCENE
+    harder = Perturbation(friction=0.5, range=1.2, camera_noise=4.0, light=0.5).of_scene(SCENE)
+    cube, before = harder.objects["cube"], SCENE.objects["cube"]
+    assert cube.friction == 0.5 * before.friction
+    assert_allclose(np.ptp(cube.place.x), 1.2 * np.ptp(before.place.x))
+    assert_allclose(np.mean(cube.place.x), np.mean(before.place.x))
+    assert harder.camera.sensor.noise == 4.0
+    assert harder.light.ambient == 0.5 * SCENE.light.ambient
+    turned = Perturbation(light_turn_deg=90.0).of_scene(SCENE).light.direction
+    x, y, z = SCENE.light.direction
+    assert_allclose(turned, (-y, x, z), atol=1e-12)
+
+
+def test_detection_noise_has_the_size_that_is_asked_for() -> None:
+    seen = detection()
+    view = View(np.zeros((2, 2, 3), np.uint8), (seen,), ())
+    noise = Perturbation(detection_noise_mm=3.0, detection_noise_deg=2.0)
+    frames = [noise.of_view(view, seed).detections[0].frame for seed in range(2000)]
+    shifts = np.array([frame.position - seen.frame.position for frame in frames])
+    assert_allclose(shifts.std(axis=0), 0.003, rtol=0.1)  # [m]
+    turns = [frame.angle - seen.frame.angle for frame in frames]
+    assert_allclose(np.rad2deg(np.std(turns)), 2.0, rtol=0.1)
+    again = noise.of_view(view, 7).detections[0].frame
+    assert_allclose(again.position, frames[7].position, rtol=0, atol=0)
+
+
+def test_a_covered_lens_ends_every_episode(plan: Plan) -> None:
+    trial = replace(plan.trial(0), perturbation=Perturbation(covered=True))
+    assert perform(trial).result.verdict.outcome is Outcome.OBJECT_NOT_SEEN
+    assert bench_of(trial).covered
+
+
+def test_a_plan_file_says_what_the_options_say(model_file: Path, tmp_path: Path) -> None:
+    file = tmp_path / "plan.toml"
+    file.write_text(
+        f'models = ["{model_file}"]\nscene = ["pick_and_place"]\nepisodes = 2\nseed = 5\n'
+        "[sweep]\ndetection_noise_mm = [0, 2]\n"
+    )
+    options = PlanOptions(
+        models=(model_file,),
+        scene=("pick_and_place",),
+        episodes=2,
+        seed=5,
+        sweep=Sweep(detection_noise_mm=(0.0, 2.0)),
+    )
+    assert PlanOptions.read(file).plan() == options.plan()
+    file.write_text('scene = ["pick_and_place"]\nepisode = 3\n')
+    with pytest.raises(DescriptionError, match=r"plan.toml: episode: is no key that is known here"):
+        PlanOptions.read(file)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"scene": ("nowhere",)}, "no scene named 'nowhere'"),
+        ({"models": (Path("none.npz"),)}, "none.npz"),
+        ({"models": ()}, "there is nothing to evaluate"),
+        ({"method": ("line",)}, "say where they are: --demos FOLDER"),
+        ({"sweep": Sweep(friction=(0.0,))}, "--friction is 0.0: input should be greater than 0"),
+    ],
+)
+def test_a_mistake_is_told_before_the_first_episode(
+    changes: dict[str, object], message: str, model_file: Path
+) -> None:
+    options = PlanOptions(models=(model_file,), scene=("pick_and_place",), episodes=1)
+    with pytest.raises(CobotError, match=message):
+        options.model_copy(update=changes).plan()

@@ -73,6 +73,16 @@ def save_picture(picture: Picture, file: Path) -> Path:
     return file
 
 
+def encode_small(picture: Picture, *, width: int, quality: int = 70) -> bytes:
+    """An RGB picture as WebP, shrunk to ``width`` [px] where it is wider; ``quality`` in 1..100."""
+    height = round(picture.shape[0] * width / picture.shape[1])
+    if picture.shape[1] > width:
+        picture = np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
+    bgr = np.ascontiguousarray(picture[..., ::-1])
+    _, encoded = cv2.imencode(".webp", bgr, [cv2.IMWRITE_WEBP_QUALITY, quality])
+    return bytes(encoded.tobytes())
+
+
 def _draw_shape(canvas: "_Canvas", detection: Detection, model: ObjectModel | None) -> Array:
     """Outline and axes; returns the pixels between which they lie."""
     if model is None:

@@ -15,8 +15,8 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.detection import NotSeen
 from cobot_lfd.errors import ModelError, MotionError
 from cobot_lfd.frame import Frame
-from cobot_lfd.learning.model import TaskParameterisedGMM
 from cobot_lfd.learning.path import GeneratedPath
+from cobot_lfd.method import PathModel
 from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.tool import grasp_yaw
 from robots import Arm, JointLimitError, Kinematics, NotConvergedError, RobotDescription
@@ -45,6 +45,7 @@ class Bench:
         kinematics: Of the robot.
         model: What was learnt.
         covered: Whether something covers the camera's lens.
+        misjudge: What becomes of a view before anything is done with it, given the seed; None: nothing.
     """
 
     scene_name: str
@@ -52,8 +53,9 @@ class Bench:
     scene: SceneDescription
     robot: RobotDescription
     kinematics: Kinematics
-    model: TaskParameterisedGMM
+    model: PathModel
     covered: bool = False
+    misjudge: Callable[[View, int], View] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,11 +66,13 @@ class EpisodeRun:
         result: What happened.
         view: What the camera saw.
         path: The path that was generated; None where it did not come to that.
+        true_frames: Where the objects stood; only for those who judge the episode.
     """
 
     result: EpisodeResult
     view: View
     path: GeneratedPath | None
+    true_frames: Mapping[str, Frame]
 
 
 class _EpisodeFailedError(Exception):
@@ -116,13 +120,16 @@ def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | 
         true_frames = world.true_frames()
         with notes.timed("perceive"):
             view = perceive(world, covered=bench.covered)
+        if bench.misjudge is not None:
+            view = bench.misjudge(view, seed)
         try:
             verdict = _attempt(bench, world, arm, view, notes, film(world) if film else None)
         except _EpisodeFailedError as failure:
             verdict = failure.verdict
         except tuple(_FAILURES) as error:
             verdict = Verdict(_FAILURES[type(error)], str(error))
-    return EpisodeRun(_result(bench, seed, verdict, view, true_frames, notes), view, notes.path)
+    result = _result(bench, seed, verdict, view, true_frames, notes)
+    return EpisodeRun(result, view, notes.path, true_frames)
 
 
 def _attempt(

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from cobot_lfd.app.disk import told, write_file
 
@@ -24,7 +25,7 @@ class Provenance:
         commit: Git commit of the checkout it ran from; None if it was not run from one.
         modified: Whether the checkout differed from its commit; None if it was not run from one.
         seeds: Seeds of the episodes.
-        options: The command's options by name, as text or numbers.
+        options: The command's options by name, as JSON can hold them.
         model: Name of the model's file; None if there is no model.
         model_sha256: Checksum of that file; None if there is no model.
         packages: Version of each package that this program needs.
@@ -36,7 +37,7 @@ class Provenance:
     commit: str | None
     modified: bool | None
     seeds: tuple[int, ...]
-    options: Mapping[str, str | float | bool | None]
+    options: Mapping[str, Any]
     model: str | None
     model_sha256: str | None
     packages: Mapping[str, str]
@@ -48,7 +49,7 @@ class Provenance:
         cls,
         *,
         seeds: Sequence[int],
-        options: Mapping[str, str | float | bool | None],
+        options: Mapping[str, Any],
         model: Path | None = None,
     ) -> "Provenance":
         """Look at this program, its surroundings and the model.

@@ -10,7 +10,7 @@ from cobot_lfd.app.episodes import RecordedEpisode
 from cobot_lfd.app.hand import Hand, ScriptedHand
 from cobot_lfd.app.perceive import View, perceive
 from cobot_lfd.app.recorder import Recorder
-from cobot_lfd.app.script import write_script
+from cobot_lfd.app.script import HAND_STREAM, write_script
 from cobot_lfd.app.store import list_episodes, load_episode, save_episode
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome, Verdict
@@ -19,7 +19,6 @@ from robots import Arm, load_robot
 from scenes import SceneDescription, World, check_success, load_scene, object_models
 
 _SAMPLE_PERIOD = 0.01  # [s] between two recorded samples
-_HAND_STREAM = 1  # keeps the hand's randomness apart from that of the scene's layout, which has the same seed
 
 
 def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpisode:
@@ -72,7 +71,7 @@ def _scripted_hand(scene: SceneDescription, world: World, arm: Arm, seed: int) -
         yaw=grasp_yaw(frames[scene.task.pick].angle, symmetry),
         maximum_opening=arm.description.gripper.maximum_opening,
         time_step=scene.physics.time_step,
-        rng=np.random.default_rng([seed, _HAND_STREAM]),
+        rng=np.random.default_rng([seed, HAND_STREAM]),
     )
     return ScriptedHand(script, scene.physics.time_step)
 

@@ -4,13 +4,15 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from time import monotonic
+from typing import BinaryIO, Self
 
 from cobot_lfd.app.disk import told
 from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.errors import DataError
 
 _CHUNK = 4096
+_GROUP, _GROUP_TIME = 8, 2.0  # results, or time [s], after which the disk is waited for
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,52 @@ def append_results(file: Path, results: Iterable[EpisodeResult]) -> None:
         stream.write(lines)
         stream.flush()
         os.fsync(stream.fileno())
+
+
+class ResultWriter:
+    """Appends results one by one in a ``with`` statement; they are safe on the disk in small groups.
+
+    A line has left this process when ``write`` returns, so that only a failure of the whole machine can lose
+    the last few.
+    """
+
+    def __init__(self, file: Path) -> None:
+        """Open the file; a half-written line at its end, left by a crash, is cut off.
+
+        Raises:
+            DataError: If the file cannot be written.
+        """
+        self._file = file
+        with told(file, "append a result to"):
+            self._stream = file.open("ab+")
+            self._stream.truncate(_end_of_whole_lines(self._stream))
+        self._unsynced, self._synced_at = 0, monotonic()
+
+    def write(self, result: EpisodeResult) -> None:
+        """Append one result as a whole line.
+
+        Raises:
+            DataError: If the disk is full.
+        """
+        with told(self._file, "append a result to"):
+            self._stream.write(f"{result.to_json()}\n".encode())
+            self._stream.flush()
+            self._unsynced += 1
+            if self._unsynced >= _GROUP or monotonic() - self._synced_at > _GROUP_TIME:
+                self._sync()
+
+    def __enter__(self) -> Self:
+        """The writer itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Wait for the disk and close the file."""
+        with told(self._file, "append a result to"), self._stream:
+            self._sync()
+
+    def _sync(self) -> None:
+        os.fsync(self._stream.fileno())
+        self._unsynced, self._synced_at = 0, monotonic()
 
 
 def read_results(file: Path) -> ResultLog:

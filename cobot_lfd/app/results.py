@@ -66,6 +66,10 @@ class EpisodeResult:
         scene: Name of the scene.
         robot: Name of the robot.
         method: Name of the learning method, such as "improved".
+        contender: Name of what was evaluated, where several were: a model's file or a method.
+        perturbation: What was made harder than in the scene's own file, by name; empty: nothing.
+        run: Identifies the plan that the episode belongs to; empty for a single episode.
+        trial: Place of the episode in that plan.
         verdict: How the episode ended.
         objects: What was seen and how well, in the order of detection.
         duration: Duration of the arm's whole motion [s]; None where no motion was planned.
@@ -79,6 +83,10 @@ class EpisodeResult:
     robot: str
     method: str
     verdict: Verdict
+    contender: str = ""
+    perturbation: Mapping[str, float] = field(default_factory=dict)
+    run: str = ""
+    trial: int = 0
     objects: tuple[SeenObject, ...] = ()
     duration: float | None = None
     metrics: Mapping[str, float] = field(default_factory=dict)
@@ -87,6 +95,7 @@ class EpisodeResult:
     def __post_init__(self) -> None:
         """Copy; plain dictionaries, because results travel between processes."""
         object.__setattr__(self, "objects", tuple(self.objects))
+        object.__setattr__(self, "perturbation", dict(self.perturbation))
         object.__setattr__(self, "metrics", dict(self.metrics))
         object.__setattr__(self, "times", dict(self.times))
 
@@ -100,10 +109,14 @@ class EpisodeResult:
 
     def _comparable(self) -> dict[str, Any]:
         return {
+            "run": self.run,
+            "trial": self.trial,
             "seed": self.seed,
             "scene": self.scene,
             "robot": self.robot,
             "method": self.method,
+            "contender": self.contender,
+            "perturbation": dict(self.perturbation),
             "success": self.verdict.succeeded,
             "outcome": self.verdict.outcome.kind,
             "detail": self.verdict.detail,
@@ -131,7 +144,10 @@ class EpisodeResult:
             raise DataError(f"{line[:60]!r} is no result of an episode: {error!r}.") from error
 
 
-_PLAIN = ("seed", "scene", "robot", "method", "duration", "metrics", "times")
+_PLAIN = (
+    *("run", "trial", "seed", "scene", "robot", "method"),
+    *("contender", "perturbation", "duration", "metrics", "times"),
+)
 
 
 def _line(values: dict[str, Any]) -> str:

@@ -15,6 +15,9 @@ from cobot_lfd.pose import Pose
 from cobot_lfd.tool import tool_above
 from scenes import Task
 
+HAND_STREAM = 1
+"""Keeps the hand's randomness apart from that of the scene's layout, which has the same seed."""
+
 _SPEED = 0.25  # [m/s] mean speed of a person's hand on the way to the part and away from it
 _SHORTEST = 0.8  # [s] that even the shortest movement takes
 _PAUSE = 0.3  # [s] for which the hand rests after each movement

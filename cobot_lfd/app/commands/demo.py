@@ -47,9 +47,9 @@ def demo(
     )
     codes.append(
         evaluate(
-            model,
-            scene=scene,
-            robot=robot,
+            (model,),
+            scene=(scene,),
+            robot=(robot,),
             out=folder / "evaluation",
             episodes=episodes,
             seed=new_seed + 1,

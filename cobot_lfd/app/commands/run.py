@@ -6,13 +6,13 @@ from pathlib import Path
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.draw import draw_detections, save_picture
+from cobot_lfd.app.draw import save_picture
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluate import Job, bench_for
 from cobot_lfd.app.film import filming
+from cobot_lfd.app.illustrate import drawn_view
 from cobot_lfd.app.plot import plot_model
 from cobot_lfd.app.store import load_demonstrations
-from scenes import object_models
 
 
 def run(
@@ -55,17 +55,8 @@ def _illustrate(
     """Draw what is asked for and can be drawn; returns the files."""
     files = []
     path = episode.path
-    models = object_models(bench.scene)
     if picture:
-        drawn = draw_detections(
-            episode.view.picture,
-            bench.scene.camera.camera,
-            episode.view.detections,
-            models=models,
-            path=None if path is None else path.mean,
-            path_z=next(model.z for model in models if model.name == bench.scene.task.pick),
-        )
-        files.append(save_picture(drawn, picture))
+        files.append(save_picture(drawn_view(bench.scene, episode.view, path), picture))
     if plot and path is not None:
         demonstrations = load_demonstrations(demos) if demos else []
         frames = {name: episode.view.frames[name] for name in bench.model.frame_kinds}

@@ -1,0 +1,1 @@
+"""Reports: what an evaluation says, for people (HTML, Markdown) and for programs (CSV, JSON)."""
