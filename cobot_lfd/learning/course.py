@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import Scenes, TaskData
@@ -160,12 +161,12 @@ def held_out_errors(data: TaskData, oriented: Sequence[bool], roughness: Roughne
     return np.asarray(np.linalg.norm(regression.held_out, axis=1).mean(axis=1))
 
 
-def no_landmarks(data: TaskData) -> Array:
+def no_landmarks(data: TaskData) -> NDArray[np.intp]:
     """No inner landmarks, shape (N, 0)."""
     return np.zeros((len(data.paths), 0), dtype=np.intp)
 
 
-def inner_landmarks(data: TaskData) -> Array:
+def inner_landmarks(data: TaskData) -> NDArray[np.intp]:
     """Steps at which each demonstration passes the frames on its way, in their order, shape (N, M)."""
     distance = np.linalg.norm(data.local, axis=-1)
     nearest = distance.argmin(axis=-1)
@@ -181,7 +182,7 @@ def _best_phases(
     data: TaskData, features: FeatureSet, settings: CourseSettings
 ) -> tuple[float | None, Phases, SceneRegression, Progress]:
     """The way of telling phase that predicts the paths over time best."""
-    choices: list[tuple[float | None, Array]] = [(None, no_landmarks(data))]
+    choices: list[tuple[float | None, NDArray[np.intp]]] = [(None, no_landmarks(data))]
     if settings.align:
         choices = [(reach, no_landmarks(data)) for reach in REACHES]
         landmarks = inner_landmarks(data)

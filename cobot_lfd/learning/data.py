@@ -108,14 +108,14 @@ class TaskData:
         return self.only([n for n in range(len(self.paths)) if n != demonstration])
 
 
-def collect(demonstrations: Sequence[TaskDemonstration], max_samples: int | None = None) -> TaskData:
+def collect(demonstrations: Sequence[TaskDemonstration], n_steps: int | None = None) -> TaskData:
     """Bring demonstrations of any length and sampling onto one grid of normalised time.
 
-    The grid has as many steps as the longest demonstration; between samples the path is straight.
+    Between its samples a path is straight.
 
     Args:
         demonstrations: At least one; all with the same frame names and the same dimension.
-        max_samples: Upper limit for the number of steps of the grid.
+        n_steps: Number of steps of the grid; None: as many as the longest demonstration has.
 
     Raises:
         ValueError: If there are none, or planar and spatial ones are mixed.
@@ -127,7 +127,7 @@ def collect(demonstrations: Sequence[TaskDemonstration], max_samples: int | None
         raise ValueError("planar and spatial demonstrations are mixed; one model learns from one sort.")
     names = _common_names(demonstrations)
     longest = max(len(demonstration.path) for demonstration in demonstrations)
-    times = np.linspace(0.0, 1.0, longest if max_samples is None else min(longest, max_samples))
+    times = np.linspace(0.0, 1.0, longest if n_steps is None else n_steps)
     paths = np.stack([_resampled(demonstration, times) for demonstration in demonstrations])
     duration = float(np.median([d.times[-1] - d.times[0] for d in demonstrations]))
     return TaskData(names, times, paths, stack_scenes([d.frames for d in demonstrations], names), duration)

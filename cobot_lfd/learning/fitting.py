@@ -24,8 +24,8 @@ from cobot_lfd.learning.settings import (
     RingDirection,
 )
 
-MAX_STEPS = 200
-"""Steps to which long recordings are brought, except for mixtures, which use every sample."""
+N_STEPS = 200
+"""Steps to which recordings are brought, except for mixtures, which use every sample."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ def learn(
         ValueError: If a frame is named whose kind is known, and there is none.
     """
     mixtures = settings.generator is Generator.PRODUCT and settings.encode is Encode.MIXTURE
-    data = collect(demonstrations, None if mixtures else MAX_STEPS)
+    data = collect(demonstrations, None if mixtures else N_STEPS)
     if data.scale <= np.finfo(float).eps * max(1.0, float(np.abs(data.paths).max())):
         raise DataError("no demonstration moves; record paths that go somewhere.")
     findings = _with_known_kinds(identify(data, settings, rng), settings)

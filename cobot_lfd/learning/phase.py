@@ -10,6 +10,7 @@ depends on the distance to it alone, half way between two it is the share of the
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from cobot_lfd.arrays import Array
@@ -62,7 +63,7 @@ def way_despite_trembling(paths: Array) -> Array:
     return way
 
 
-def by_phase(paths: Array, landmarks: Array, reach: float | None, n_phases: int) -> Phases:
+def by_phase(paths: Array, landmarks: NDArray[np.intp], reach: float | None, n_phases: int) -> Phases:
     """Tell the demonstrations by phase instead of time.
 
     Args:
@@ -90,7 +91,7 @@ def by_phase(paths: Array, landmarks: Array, reach: float | None, n_phases: int)
     return Phases(told, shares)
 
 
-def _piecewise(way: Array, landmarks: Array, reach: float) -> Array:
+def _piecewise(way: Array, landmarks: NDArray[np.intp], reach: float) -> Array:
     """Phase of each sample, with the landmarks at the same phase in all demonstrations, shape (N, T)."""
     n, t = way.shape
     stops = np.concatenate([np.zeros((n, 1), int), landmarks, np.full((n, 1), t - 1)], axis=1)
