@@ -1,7 +1,7 @@
 """Reading TOML files of robots and scenes: a fault is told with file, key, what was given and what is allowed."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,26 +19,42 @@ class DescriptionModel(BaseModel):
 Model = TypeVar("Model", bound=BaseModel)
 
 
-def read_description(file: Path, model: type[Model]) -> Model:
+def read_description(
+    file: Path,
+    model: type[Model],
+    prepare: Callable[[dict[str, Any]], dict[str, Any]] | None = None,
+) -> Model:
     """The description in ``file``, validated.
 
     Args:
         file: A TOML file.
         model: The pydantic model that says which keys and values are allowed.
+        prepare: Changes the file's content before it is validated.
 
     Raises:
         DescriptionError: If the file cannot be read, is no TOML, or holds a key or value that is not allowed.
     """
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise DescriptionError(f"{file}: cannot be read: {error}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise DescriptionError(f"{file}: is no valid TOML: {error}") from error
+    content = read_toml(file)
+    if prepare is not None:
+        content = prepare(content)
     try:
         return model.model_validate(content)
     except ValidationError as error:
         raise DescriptionError("\n".join(f"{file}: {fault}" for fault in _faults(error, content))) from error
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    """The content of a TOML file.
+
+    Raises:
+        DescriptionError: If the file cannot be read or is no TOML.
+    """
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise DescriptionError(f"{file}: cannot be read: {error}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise DescriptionError(f"{file}: is no valid TOML: {error}") from error
 
 
 def _faults(error: ValidationError, content: Mapping[str, Any]) -> list[str]:

@@ -27,6 +27,7 @@ class Outcome(Enum):
     GRASP_LOST = "the part slipped out of the gripper on the way"
     NOT_PLACED = "the part does not lie where it belongs"
     NOT_AT_REST = "the part does not come to rest"
+    HARD_CONTACT = "something was hit harder than it may be"
     NOT_RELEASED = "the gripper still touches the part"
     TIMEOUT = "the time for the episode is over"
     TRACKING_LOST = "the arm did not follow the planned motion"

@@ -1,4 +1,4 @@
-"""Objects as bodies of the simulator, built from boxes."""
+"""Objects as bodies of the simulator, built from boxes and balls."""
 
 import numpy as np
 import pybullet
@@ -9,7 +9,7 @@ from cobot_lfd.frame import Frame
 from cobot_lfd.pose import Pose
 from scenes.boxes import Block, blocks_of
 from scenes.colours import Colour
-from scenes.shapes import ObjectDescription, Table
+from scenes.shapes import Ball, ObjectDescription, Table
 
 
 def add_table(client: BulletClient, table: Table) -> int:
@@ -23,9 +23,17 @@ def add_table(client: BulletClient, table: Table) -> int:
 
 def add_object(client: BulletClient, item: ObjectDescription, frame: Frame) -> int:
     """Add an object that stands on the table at a frame; returns its body number."""
-    body = _add_blocks(client, blocks_of(item), _standing(frame), mass=item.mass, colour=item.colour)
+    if isinstance(item, Ball):
+        body = _add_ball(client, item, _standing(frame))
+    else:
+        body = _add_blocks(client, blocks_of(item), _standing(frame), mass=item.mass, colour=item.colour)
     client.changeDynamics(
-        body, -1, lateralFriction=item.friction, spinningFriction=item.spinning_friction, restitution=0.0
+        body,
+        -1,
+        lateralFriction=item.friction,
+        spinningFriction=item.spinning_friction,
+        rollingFriction=item.rolling_friction,
+        restitution=0.0,
     )
     return body
 
@@ -67,6 +75,22 @@ def _add_blocks(
         baseOrientation=pose.quaternion.tolist(),
     )
     client.changeVisualShape(body, -1, rgbaColor=[*colour, 1.0], specularColor=[0.0, 0.0, 0.0])
+    for i, block in enumerate(blocks):
+        if block.colour is not None:
+            client.changeVisualShape(body, -1, shapeIndex=i, rgbaColor=[*block.colour, 1.0])
+    return int(body)
+
+
+def _add_ball(client: BulletClient, ball: Ball, pose: Pose) -> int:
+    shape = {"shapeType": pybullet.GEOM_SPHERE, "radius": ball.diameter / 2}
+    body = client.createMultiBody(
+        baseMass=ball.mass,
+        baseCollisionShapeIndex=client.createCollisionShape(**shape),
+        baseVisualShapeIndex=client.createVisualShape(**shape),
+        basePosition=pose.apply([0.0, 0.0, ball.diameter / 2]).tolist(),
+        baseOrientation=pose.quaternion.tolist(),
+    )
+    client.changeVisualShape(body, -1, rgbaColor=[*ball.colour, 1.0], specularColor=[0.0, 0.0, 0.0])
     return int(body)
 
 

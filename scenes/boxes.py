@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cobot_lfd.arrays import Array, frozen_array
-from scenes.shapes import Box, Container, ObjectDescription
+from scenes.colours import Colour
+from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription, Part
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -15,10 +16,12 @@ class Block:
     Attributes:
         centre: Its middle in the object's frame [m], shape (3,).
         half_size: Half its extent along the axes [m], shape (3,).
+        colour: Its own colour, where it differs from the object's.
     """
 
     centre: Array
     half_size: Array
+    colour: Colour | None = None
 
     def __post_init__(self) -> None:
         """Copy and check."""
@@ -27,12 +30,16 @@ class Block:
 
 
 def blocks_of(item: ObjectDescription) -> tuple[Block, ...]:
-    """The boxes that make up an object; its frame is in the middle of its foot, z upwards."""
+    """The boxes that make up an object, or enclose it; its frame is at its foot, z upwards."""
     match item:
         case Box():
             return (_block((0.0, 0.0), item.size, foot=0.0),)
         case Container():
             return _container(item)
+        case Ball():
+            return (_block((0.0, 0.0), (item.diameter,) * 3, foot=0.0),)
+        case Assembly():
+            return tuple(_between(part) for part in item.boxes)
 
 
 def _container(item: Container) -> tuple[Block, ...]:
@@ -49,3 +56,8 @@ def _container(item: Container) -> tuple[Block, ...]:
 
 def _block(centre: tuple[float, float], size: tuple[float, float, float], *, foot: float) -> Block:
     return Block(np.array([*centre, foot + size[2] / 2]), np.array(size) / 2)
+
+
+def _between(part: Part) -> Block:
+    low, high = np.array(part.low), np.array(part.high)
+    return Block(0.5 * (low + high), 0.5 * (high - low), part.colour)

@@ -1,6 +1,7 @@
 """A scene as its file describes it: read, checked, and told what is wrong where it is wrong."""
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -8,9 +9,11 @@ from pydantic import Field, model_validator
 
 from cobot_lfd.description_file import DescriptionModel, read_description
 from cobot_lfd.errors import DescriptionError
-from scenes.quantities import NotNegative, Positive
+from cobot_lfd.frame import Frame
+from scenes.quantities import NotNegative, Positive, Range
 from scenes.shapes import ObjectDescription, Table
 from scenes.task import Inside, Task
+from scenes.variants import apply_variant, split_variant
 from scenes.view import CameraDescription, Light
 
 _FOLDER = Path(__file__).parent
@@ -34,6 +37,7 @@ class SceneDescription(DescriptionModel):
     Attributes:
         title: What the scene is about, for people.
         centre_distance: Least distance between the origins of two objects [m], so that the gripper has room.
+        radius: Least and largest distance of the objects that vary from the robot's base [m].
         physics: How the simulation runs.
         table: The table.
         objects: Name to object.
@@ -45,6 +49,7 @@ class SceneDescription(DescriptionModel):
 
     title: str
     centre_distance: NotNegative = 0.0
+    radius: Range = (0.0, 10.0)
     physics: Physics = Physics()
     table: Table
     objects: Annotated[Mapping[str, ObjectDescription], Field(min_length=1)]
@@ -61,10 +66,11 @@ class SceneDescription(DescriptionModel):
                     f"{key}: no object named '{name}'; choose one of: {', '.join(self.objects)}."
                 )
         containers = [name for name, item in self.objects.items() if item.shape == "container"]
-        if self.success.container not in containers:
+        if self.success.container not in containers and self.success.region is None:
             allowed = ", ".join(containers) or "there is none"
             raise ValueError(
-                f"success.container: '{self.success.container}' is no container; choose one of: {allowed}."
+                f"success.container: '{self.success.container}' is no container; choose one of: {allowed}, "
+                "or say in success.region where in it the object must lie."
             )
         return self
 
@@ -74,6 +80,19 @@ class SceneDescription(DescriptionModel):
         yield from ((f"task.waypoints.{i}.frame", w.frame) for i, w in enumerate(self.task.waypoints))
         yield "success.object", self.success.object
         yield "success.container", self.success.container
+        rules = {"task.start_yaw": self.task.start_yaw, "task.end_yaw": self.task.end_yaw}
+        rules_and_more = {**rules, "success.through": self.success.through}
+        yield from ((f"{key}.frame", rule.frame) for key, rule in rules_and_more.items() if rule is not None)
+
+    @property
+    def frame_names(self) -> tuple[str, ...]:
+        """Names of the objects whose frames are the task's parameters."""
+        return tuple(name for name, item in self.objects.items() if item.frame)
+
+    @property
+    def known_frames(self) -> dict[str, Frame]:
+        """The frames of the objects that the camera does not see, because they stand where they always do."""
+        return {name: item.place.middle for name, item in self.objects.items() if not item.seen}
 
 
 def scene_names() -> tuple[str, ...]:
@@ -84,12 +103,16 @@ def scene_names() -> tuple[str, ...]:
 def load_scene(name_or_path: str | Path) -> SceneDescription:
     """Read a scene by the name of a packaged scene, or from a file whose name ends in ``.toml``.
 
+    After either a variant may be named: ``sorting@wide``.
+
     Raises:
         DescriptionError: If there is no such scene, or its file is not as it should be; the message names
             file, key, value and what is allowed.
     """
-    if Path(name_or_path).suffix == ".toml":
-        return read_description(Path(name_or_path), SceneDescription)
-    if str(name_or_path) not in scene_names():
-        raise DescriptionError(f"no scene named '{name_or_path}'; choose one of: {', '.join(scene_names())}.")
-    return read_description(_FOLDER / f"{name_or_path}.toml", SceneDescription)
+    name, variant = split_variant(str(name_or_path))
+    prepare = partial(apply_variant, variant=variant)
+    if Path(name).suffix == ".toml":
+        return read_description(Path(name), SceneDescription, prepare)
+    if name not in scene_names():
+        raise DescriptionError(f"no scene named '{name}'; choose one of: {', '.join(scene_names())}.")
+    return read_description(_FOLDER / f"{name}.toml", SceneDescription, prepare)

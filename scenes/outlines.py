@@ -5,36 +5,61 @@ import numpy as np
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import ObjectModel
 from scenes.description import SceneDescription
-from scenes.shapes import Box, Container, ObjectDescription
+from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription
+from scenes.union import union_outlines
+
+_N_CIRCLE = 32  # corners of the polygon that stands for a circle
+_SAME = 1e-9  # [m]
+_SAME_HEIGHT = 1e-6  # [m]
 
 
 def object_models(description: SceneDescription) -> tuple[ObjectModel, ...]:
-    """One model per object, in the order of the scene's file."""
-    return tuple(_model(name, item) for name, item in description.objects.items())
+    """One model for each object that the camera sees, in the order of the scene's file."""
+    return tuple(object_model(name, item) for name, item in description.objects.items() if item.seen)
 
 
-def _model(name: str, item: ObjectDescription) -> ObjectModel:
-    size, height, holes = _seen_from_above(item)
+def object_model(name: str, item: ObjectDescription) -> ObjectModel:
+    """What one object looks like from above."""
+    outline, holes, z, base_z = _seen_from_above(item)
     return ObjectModel(
         name=name,
-        outline=_rectangle(size),
-        z=height,
+        outline=outline,
+        z=z,
         colour=np.array(item.colour),
-        symmetry=4 if np.isclose(*size) else 2,
-        base_z=0.0,
-        holes=tuple(_rectangle(hole) for hole in holes),
+        symmetry=_N_CIRCLE if isinstance(item, Ball) else _symmetry(outline),
+        base_z=base_z,
+        holes=tuple(holes),
     )
 
 
-def _seen_from_above(item: ObjectDescription) -> tuple[tuple[float, float], float, list[tuple[float, float]]]:
-    """Size, height and the sizes of the openings of the uppermost face [m]."""
+def _seen_from_above(item: ObjectDescription) -> tuple[Array, list[Array], float, float]:
+    """Outline [m], openings [m], height and foot of the uppermost contour [m]."""
     match item:
         case Box():
-            return (item.size[0], item.size[1]), item.size[2], []
+            return _rectangle(item.size[0], item.size[1]), [], item.size[2], 0.0
         case Container():
-            return item.outer_size, item.height, [item.inner_size]
+            return _rectangle(*item.outer_size), [_rectangle(*item.inner_size)], item.height, 0.0
+        case Ball():
+            angles = 2 * np.pi * np.arange(_N_CIRCLE) / _N_CIRCLE
+            circle = 0.5 * item.diameter * np.column_stack([np.cos(angles), np.sin(angles)])
+            return circle, [], 0.5 * item.diameter, 0.5 * item.diameter
+        case Assembly():
+            tops = [box for box in item.boxes if box.high[2] > item.height - _SAME_HEIGHT]
+            outline, *holes = union_outlines([(*box.low[:2], *box.high[:2]) for box in tops])
+            return outline, [hole[::-1] for hole in holes], item.height, 0.0
 
 
-def _rectangle(size: tuple[float, float]) -> Array:
+def _rectangle(length: float, width: float) -> Array:
     """The corners of a rectangle about the origin, counter-clockwise, shape (4, 2)."""
-    return np.asarray(np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * np.array(size) / 2)
+    return np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * [length / 2, width / 2]
+
+
+def _symmetry(outline: Array) -> int:
+    """Number of quarter or half turns within a full circle that bring an outline onto itself."""
+    half, quarter = -outline, outline @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    return 4 if _same_corners(quarter, outline) else 2 if _same_corners(half, outline) else 1
+
+
+def _same_corners(a: Array, b: Array) -> bool:
+    distances = np.linalg.norm(a[:, None] - b, axis=2)
+    return bool((distances.min(axis=1) < _SAME).all())

@@ -24,7 +24,10 @@ def draw_placements(description: SceneDescription, generator: np.random.Generato
         DescriptionError: If the ranges leave no room for the distance that the objects must keep.
     """
     for _ in range(_MOST_ATTEMPTS):
-        frames = {name: _draw(item.place, generator) for name, item in description.objects.items()}
+        frames = {
+            name: _draw(item.place, description.radius, generator)
+            for name, item in description.objects.items()
+        }
         if _keep_distance(list(frames.values()), description.centre_distance):
             return MappingProxyType(frames)
     raise DescriptionError(
@@ -33,9 +36,13 @@ def draw_placements(description: SceneDescription, generator: np.random.Generato
     )
 
 
-def _draw(place: Placement, generator: np.random.Generator) -> Frame:
-    x, y, angle_deg = (generator.uniform(*limits) for limits in (place.x, place.y, place.angle_deg))
-    return Frame(np.array([x, y]), np.deg2rad(angle_deg))
+def _draw(place: Placement, radius: tuple[float, float], generator: np.random.Generator) -> Frame:
+    """A frame from the ranges; one that varies keeps its distance from the robot's base."""
+    for _ in range(_MOST_ATTEMPTS):
+        x, y, angle_deg = (generator.uniform(*limits) for limits in (place.x, place.y, place.angle_deg))
+        if place.is_fixed or radius[0] <= np.hypot(x, y) <= radius[1]:
+            return Frame(np.array([x, y]), np.deg2rad(angle_deg))
+    raise DescriptionError(f"x {place.x} and y {place.y} have no place {radius} m from the robot's base.")
 
 
 def _keep_distance(frames: list[Frame], distance: float) -> bool:

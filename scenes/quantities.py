@@ -11,7 +11,8 @@ def as_range(value: object) -> object:
     return (value, value) if is_number else value
 
 
-def _ordered(value: tuple[float, float]) -> tuple[float, float]:
+def ordered(value: tuple[float, float]) -> tuple[float, float]:
+    """The range, checked: its first number must not exceed its second."""
     if value[0] > value[1]:
         raise ValueError(
             f"[{value[0]}, {value[1]}] is no range; the first number must not exceed the second."
@@ -23,5 +24,5 @@ Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Length = Annotated[float, Field(gt=0.0, le=10.0)]
-Range = Annotated[tuple[float, float], AfterValidator(_ordered)]
+Range = Annotated[tuple[float, float], AfterValidator(ordered)]
 Vector = tuple[float, float, float]

@@ -1,12 +1,14 @@
 """What the objects of a scene are made of: shapes, each a few boxes, with a colour and a weight."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from cobot_lfd.description_file import DescriptionModel
+from cobot_lfd.frame import Frame
 from scenes.colours import Colour, colour_of
-from scenes.quantities import Length, Positive, Range, as_range
+from scenes.quantities import Length, Positive, Range, Vector, as_range
 
 ColourValue = Annotated[Colour, BeforeValidator(colour_of)]
 """A colour: a name, or red, green, blue in 0..1."""
@@ -25,6 +27,17 @@ class Placement(DescriptionModel):
     y: Annotated[Range, BeforeValidator(as_range)]
     angle_deg: Annotated[Range, BeforeValidator(as_range)] = (0.0, 0.0)
 
+    @property
+    def middle(self) -> Frame:
+        """The middle of the ranges."""
+        x, y, angle_deg = (0.5 * (low + high) for low, high in (self.x, self.y, self.angle_deg))
+        return Frame(np.array([x, y]), np.deg2rad(angle_deg))
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether there is only one place."""
+        return all(low == high for low, high in (self.x, self.y, self.angle_deg))
+
 
 class _Object(DescriptionModel):
     """What all objects have in common.
@@ -34,14 +47,28 @@ class _Object(DescriptionModel):
         mass: Mass [kg]; 0 stands for an object that is fixed to the table.
         friction: Coefficient of sliding friction; two bodies in contact multiply theirs.
         spinning_friction: Coefficient of friction against turning about a contact's normal [m].
+        rolling_friction: Coefficient of friction against rolling [m].
         place: Where the object may stand.
+        seen: Whether the camera sees it; an object that it does not see stands at a fixed, known place.
+        frame: Whether its frame is a parameter of the task; it is not for what only stands in the way.
     """
 
     colour: ColourValue
     mass: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
     friction: Annotated[float, Field(ge=0.0, le=5.0)] = 0.8
     spinning_friction: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    rolling_friction: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
     place: Placement
+    seen: bool = True
+    frame: bool = True
+
+    @model_validator(mode="after")
+    def _known_where_not_seen(self) -> Self:
+        if not self.seen and not self.place.is_fixed:
+            raise ValueError(
+                "seen is false, but place holds ranges; what the camera does not see needs a fixed place."
+            )
+        return self
 
 
 class Box(_Object):
@@ -86,7 +113,56 @@ class Container(_Object):
         return self.inner_size[0] + 2 * self.wall, self.inner_size[1] + 2 * self.wall
 
 
-ObjectDescription = Annotated[Box | Container, Field(discriminator="shape")]
+class Ball(_Object):
+    """A solid ball that lies on the table; its frame is where it touches the table.
+
+    Attributes:
+        diameter: Its diameter [m].
+    """
+
+    shape: Literal["ball"]
+    diameter: Length
+
+
+class Part(DescriptionModel):
+    """One box of an assembly, given by two opposite corners in the assembly's frame.
+
+    Attributes:
+        low: The corner with the smallest coordinates [m].
+        high: The corner with the largest coordinates [m].
+        colour: Colour under white light; the assembly's by default.
+    """
+
+    low: Vector
+    high: Vector
+    colour: ColourValue | None = None
+
+    @model_validator(mode="after")
+    def _has_volume(self) -> Self:
+        if not all(low < high for low, high in zip(self.low, self.high, strict=True)):
+            raise ValueError(f"low {self.low} must be below high {self.high} in x, y and z.")
+        return self
+
+
+class Assembly(_Object):
+    """Boxes that are fixed to one another: a dustpan, a slot, a hand. Its frame is on the table.
+
+    The camera knows it by the outline of all the boxes that reach its full height.
+
+    Attributes:
+        boxes: What it is made of.
+    """
+
+    shape: Literal["assembly"]
+    boxes: Annotated[tuple[Part, ...], Field(min_length=1)]
+
+    @property
+    def height(self) -> float:
+        """Height of its top above the table [m]."""
+        return max(box.high[2] for box in self.boxes)
+
+
+ObjectDescription = Annotated[Box | Container | Ball | Assembly, Field(discriminator="shape")]
 """An object of a scene; the key ``shape`` says which kind."""
 
 

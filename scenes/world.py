@@ -18,6 +18,7 @@ from scenes.placement import draw_placements
 from scenes.prints import Print
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
 from scenes.view import CameraDescription, Light
+from scenes.watch import Watch
 
 
 class World:
@@ -28,6 +29,7 @@ class World:
         client: The physics client; a robot adds itself to it.
         bodies: Name of an object to its body's number in the client.
         table: The table's body number in the client.
+        watch: What has been noticed since the world was built. Only for the success check.
     """
 
     def __init__(self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny") -> None:
@@ -51,6 +53,7 @@ class World:
         self.bodies: Mapping[str, int] = MappingProxyType(
             {name: add_object(self.client, description.objects[name], at) for name, at in placements.items()}
         )
+        self.watch = Watch(self.client, description, self.bodies)
 
     def __enter__(self) -> Self:
         """The world itself."""
@@ -78,6 +81,7 @@ class World:
         """Let one time step pass."""
         self.client.stepSimulation()
         self._n_steps += 1
+        self.watch.look()
 
     def take_picture(
         self,
