@@ -1,6 +1,6 @@
 """The tool over a table: the rotations and yaws that a gripper takes from above."""
 
-import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,15 +21,42 @@ def tool_above(point: ArrayLike, height: float, yaw: float) -> Pose:
     return Pose(np.array([*np.asarray(point), height]), pointing_down(yaw))
 
 
-def grasp_yaw(angle: float, symmetry: int, preferred: float = 0.0) -> float:
-    """Yaw at which a gripper of two fingers grasps an object [rad].
+@dataclass(frozen=True, slots=True)
+class ToolTurn:
+    """How the tool turns about the vertical while it goes along a path.
 
-    Of the yaws that the symmetry of object and gripper make equal it is the nearest to ``preferred``.
+    Attributes:
+        start: Yaw at the path's start [rad].
+        end: Yaw at the path's end [rad].
+        begins: Share of the path's length at which the tool begins to turn.
+        ends: Share of the path's length at which it has turned.
+    """
+
+    start: float
+    end: float
+    begins: float = 0.1
+    ends: float = 0.6
+
+    @classmethod
+    def none(cls, yaw: float) -> "ToolTurn":
+        """No turn at all."""
+        return cls(yaw, yaw)
+
+    def along(self, path: ArrayLike) -> Array:
+        """The yaw at each point of a path [m], shape (M, 2): [rad], shape (M,); it starts and ends smoothly."""
+        lengths = np.linalg.norm(np.diff(np.asarray(path, dtype=np.float64), axis=0), axis=1)
+        shares = np.concatenate([[0.0], np.cumsum(lengths)]) / max(lengths.sum(), 1e-12)
+        u = np.clip((shares - self.begins) / max(self.ends - self.begins, 1e-12), 0.0, 1.0)
+        return np.asarray(self.start + (self.end - self.start) * u * u * (3.0 - 2.0 * u))
+
+
+def equal_yaws(direction: float, turns: int, preferred: float = 0.0) -> list[float]:
+    """The yaws that do equally well [rad], the nearest to ``preferred`` first.
 
     Args:
-        angle: Direction of the object [rad].
-        symmetry: Number of turns within a full circle that look the same.
-        preferred: Yaw at which the arm is most comfortable [rad].
+        direction: One of them [rad].
+        turns: How many there are within a full circle.
+        preferred: Yaw at which the arm is most comfortable [rad]; all are within half a circle of it.
     """
-    turn = 2 * np.pi / math.lcm(symmetry, 2)
-    return wrap_angle(angle - turn * np.round((angle - preferred) / turn))
+    yaws = [preferred + wrap_angle(direction + 2 * np.pi * k / turns - preferred) for k in range(turns)]
+    return sorted(yaws, key=lambda yaw: abs(yaw - preferred))

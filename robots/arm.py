@@ -10,10 +10,10 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.pose import Pose
 from robots.body import RobotBody
 from robots.description import RobotDescription
+from robots.grip import make_grip
 
 _POSITION_GAIN = 0.5  # share of a joint's error that its motor removes in one step
 _VELOCITY_GAIN = 1.0
-_EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,7 @@ class ArmState:
 
 
 class Arm:
-    """A robot arm with a parallel gripper, in a simulation that steps elsewhere.
+    """A robot arm with a tool, in a simulation that steps elsewhere.
 
     Before every step of the simulation call either ``lead`` (the arm is compliant and a hand pulls it) or
     ``follow`` (the arm holds joint positions), and ``grip`` when the gripper's opening is to change.
@@ -56,15 +56,8 @@ class Arm:
         self._client = client
         self._torques = np.zeros(len(description.joints))
         self._led = False
-        self._closing = False
         self.body.place(np.array(description.parked))
-        for finger in self.body.fingers:
-            client.resetJointState(self.body.id, finger, 0.5 * description.gripper.maximum_opening)
-        self._couple_fingers()
-        for link in self.body.fingertips:
-            client.changeDynamics(
-                self.body.id, link, lateralFriction=description.gripper.friction, spinningFriction=0.002
-            )
+        self._grip = make_grip(client, self.body, description.gripper)
         self.follow(np.array(description.parked), np.zeros(len(description.joints)))
         self.grip(description.gripper.maximum_opening)
 
@@ -107,6 +100,7 @@ class Arm:
         world = pybullet.WORLD_FRAME
         self._client.applyExternalForce(self.body.id, self.body.tool, list(map(float, force)), point, world)
         self._client.applyExternalTorque(self.body.id, self.body.tool, list(map(float, torque)), world)
+        self._grip.update()
         self._led = True
 
     def follow(self, positions: Array, velocities: Array) -> None:
@@ -121,6 +115,7 @@ class Arm:
             positionGains=[_POSITION_GAIN] * len(positions),
             velocityGains=[_VELOCITY_GAIN] * len(positions),
         )
+        self._grip.update()
         self._led = False
 
     def hold(self) -> None:
@@ -129,47 +124,22 @@ class Arm:
         self.follow(positions, np.zeros_like(positions))
 
     def grip(self, opening: float) -> None:
-        """Move the fingers towards an opening [m] with the speed and force that the gripper has."""
-        gripper = self.description.gripper
-        self._closing = opening < _EMPTY_OPENING
-        for finger in self.body.fingers:
-            self._client.setJointMotorControl2(
-                self.body.id,
-                finger,
-                pybullet.POSITION_CONTROL,
-                targetPosition=0.5 * opening,
-                force=gripper.force,
-                maxVelocity=0.5 * gripper.speed,
-            )
+        """Move the fingers towards an opening [m]; a suction cup sucks at 0 and lets go at more."""
+        self._grip.command(opening)
 
     def holds_something(self) -> bool:
-        """Whether something keeps the fingers apart that are closing, as the gripper's own encoder tells."""
-        return self._closing and self.opening() > _EMPTY_OPENING
+        """Whether the gripper's own sensor says that it holds something."""
+        return self._grip.holds_something()
 
     def tool_position(self) -> Array:
         """Where the tool is in the world [m], shape (3,)."""
         return self.body.tool_position()
 
     def opening(self) -> float:
-        """Distance between the fingers [m]."""
-        fingers = self._client.getJointStates(self.body.id, self.body.fingers)
-        return float(sum(finger[0] for finger in fingers))
+        """Distance between the fingers [m]; of a suction cup 0 while it sucks."""
+        return self._grip.opening()
 
     def _motor_torques(self) -> Array:
         if self._led:
             return self._torques
         return np.array([state[3] for state in self._client.getJointStates(self.body.id, self.body.joints)])
-
-    def _couple_fingers(self) -> None:
-        """Let the two fingers move by equal amounts, as the belt in the hand makes them."""
-        gear = self._client.createConstraint(
-            self.body.id,
-            self.body.fingers[0],
-            self.body.id,
-            self.body.fingers[1],
-            jointType=pybullet.JOINT_GEAR,
-            jointAxis=[1, 0, 0],
-            parentFramePosition=[0, 0, 0],
-            childFramePosition=[0, 0, 0],
-        )
-        self._client.changeConstraint(gear, gearRatio=-1, erp=0.1, maxForce=50)

@@ -1,17 +1,22 @@
 """A robot's body in a PyBullet simulation: its joints and tool by name."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import pybullet
-import pybullet_data
 from pybullet_utils.bullet_client import BulletClient
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import DescriptionError
 from cobot_lfd.pose import Pose
 from cobot_lfd.quiet import quiet_output
+from robots.compose import compose, find_urdf
 from robots.description import RobotDescription
+from robots.gripper import ParallelGripper
+
+_SELF_COLLISION = pybullet.URDF_USE_SELF_COLLISION | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
 
 
 def connect() -> Any:
@@ -27,24 +32,33 @@ class RobotBody:
         client: The simulation that the body lives in.
         id: The body's number in the simulation.
         joints: Numbers of the arm's joints.
-        fingers: Numbers of the gripper's two finger joints.
-        fingertips: Numbers of the gripper's two fingertip links.
+        fingers: Numbers of the two finger joints of a gripper that has fingers.
+        fingertips: Numbers of its two fingertip links.
+        links: Name of a link to its number.
         tool: Number of the tool link.
     """
 
-    def __init__(self, client: Any, description: RobotDescription) -> None:
+    def __init__(self, client: Any, description: RobotDescription, *, self_collision: bool = False) -> None:
+        """Load it.
+
+        Args:
+            client: The simulation.
+            description: What is known of the robot.
+            self_collision: Whether links that are no neighbours may hit one another.
+        """
         self.client = client
-        client.setAdditionalSearchPath(pybullet_data.getDataPath())
-        with quiet_output():
-            self.id: int = client.loadURDF(description.urdf, useFixedBase=True)
+        flags = _SELF_COLLISION if self_collision else 0
+        self.id = _load(client, description, flags)
         names = [client.getJointInfo(self.id, i) for i in range(client.getNumJoints(self.id))]
         joints = {info[1].decode(): info[0] for info in names}
         links = {info[12].decode(): info[0] for info in names}
         self.joints = [_find(joints, name, "joint", description) for name in description.joints]
-        self.fingers = [_find(joints, name, "joint", description) for name in description.gripper.joints]
-        self.fingertips = [
-            _find(links, name, "link", description) for name in description.gripper.fingertip_links
-        ]
+        gripper = description.gripper
+        parallel = gripper if isinstance(gripper, ParallelGripper) else None
+        finger_names, fingertip_names = (parallel.joints, parallel.fingertip_links) if parallel else ((), ())
+        self.fingers = [_find(joints, name, "joint", description) for name in finger_names]
+        self.fingertips = [_find(links, name, "link", description) for name in fingertip_names]
+        self.links = links
         self.tool = _find(links, description.tool_link, "link", description)
         movable = [info[0] for info in names if info[2] != pybullet.JOINT_FIXED]
         self._columns = [movable.index(joint) for joint in self.joints]
@@ -94,6 +108,18 @@ class RobotBody:
         for column, position in zip(self._columns, positions, strict=True):
             everything[column] = float(position)
         return everything
+
+
+def _load(client: Any, description: RobotDescription, flags: int) -> int:
+    """Load the arm with its tool; returns the body's number."""
+    urdf = find_urdf(description.urdf, description.package)
+    with quiet_output():
+        if not description.parts:
+            return int(client.loadURDF(str(urdf), useFixedBase=True, flags=flags))
+        with TemporaryDirectory() as folder:
+            file = Path(folder) / "robot.urdf"
+            file.write_text(compose(urdf, description.mount, description.parts), encoding="utf-8")
+            return int(client.loadURDF(str(file), useFixedBase=True, flags=flags))
 
 
 def _find(numbers: dict[str, int], name: str, kind: str, description: RobotDescription) -> int:

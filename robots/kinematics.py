@@ -8,9 +8,11 @@ from scipy.spatial.transform import Rotation
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import CobotError
+from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from cobot_lfd.quiet import quiet_output
 from robots.body import RobotBody, connect
+from robots.collision import CollisionCheck
 from robots.description import RobotDescription
 
 _TOLERANCE = 1e-6  # of position [m] and rotation [rad]; PyBullet's link states carry noise of about 3e-8
@@ -35,6 +37,10 @@ class JointLimitError(KinematicsError):
     """The joint positions that reach the pose are outside the joint limits."""
 
 
+class CollisionError(KinematicsError):
+    """The arm would hit something."""
+
+
 class Kinematics:
     """Forward and inverse kinematics of an arm.
 
@@ -45,7 +51,8 @@ class Kinematics:
 
     def __init__(self, description: RobotDescription) -> None:
         self._client = connect()
-        self._body = RobotBody(self._client, description)
+        self._body = RobotBody(self._client, description, self_collision=True)
+        self._parked = np.array(description.parked)
         self._home = np.array(description.home)
         self._limits = description.joint_limits
 
@@ -112,6 +119,10 @@ class Kinematics:
             start = self.inverse(pose, start)
             path.append(start)
         return np.array(path)
+
+    def collisions(self, obstacles: Sequence[Obstacle]) -> CollisionCheck:
+        """A check of postures of this arm among obstacles."""
+        return CollisionCheck(self._client, self._body, obstacles, (self._home, self._parked))
 
     def _step(self, positions: Array, error: Array) -> Array:
         """A damped step on the pose error, and towards home where that is free.

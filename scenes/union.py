@@ -24,7 +24,10 @@ def union_outlines(rectangles: Sequence[Rectangle]) -> list[Array]:
     covered = np.zeros((len(xs) + 1, len(ys) + 1), dtype=np.bool_)
     x_middle, y_middle = 0.5 * (xs[1:] + xs[:-1]), 0.5 * (ys[1:] + ys[:-1])
     for low_x, low_y, high_x, high_y in rectangles:
-        inside_x, inside_y = (low_x < x_middle) & (x_middle < high_x), (low_y < y_middle) & (y_middle < high_y)
+        inside_x, inside_y = (
+            (low_x < x_middle) & (x_middle < high_x),
+            (low_y < y_middle) & (y_middle < high_y),
+        )
         covered[1:-1, 1:-1] |= inside_x[:, None] & inside_y
     loops = [_corners(xs[[i for i, _ in loop]], ys[[j for _, j in loop]]) for loop in _loops(_sides(covered))]
     return sorted(loops, key=lambda loop: -float(np.ptp(loop, axis=0).sum()))

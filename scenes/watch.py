@@ -17,7 +17,9 @@ class Watch:
         passed: Whether the object has passed where it must pass; true where it need not pass anywhere.
     """
 
-    def __init__(self, client: BulletClient, description: SceneDescription, bodies: Mapping[str, int]) -> None:
+    def __init__(
+        self, client: BulletClient, description: SceneDescription, bodies: Mapping[str, int]
+    ) -> None:
         self.largest_force = 0.0
         self.passed = description.success.through is None
         self._client = client

@@ -8,9 +8,11 @@ from time import perf_counter
 import numpy as np
 
 from cobot_lfd.app.execute import Observer, execute
+from cobot_lfd.app.geometry import farthest_from
 from cobot_lfd.app.perceive import View, perceive
-from cobot_lfd.app.plan import Stage, plan_motion
+from cobot_lfd.app.plan import Stage, Surroundings, plan_motion
 from cobot_lfd.app.results import EpisodeResult, SeenObject
+from cobot_lfd.app.turns import turn_choices
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import NotSeen
 from cobot_lfd.errors import ModelError, MotionError
@@ -18,9 +20,9 @@ from cobot_lfd.frame import Frame
 from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.method import PathModel
 from cobot_lfd.outcome import Outcome, Verdict
-from cobot_lfd.tool import grasp_yaw
-from robots import Arm, JointLimitError, Kinematics, NotConvergedError, RobotDescription
-from scenes import SceneDescription, World, check_success
+from cobot_lfd.tool import ToolTurn
+from robots import Arm, CollisionError, JointLimitError, Kinematics, NotConvergedError, RobotDescription
+from scenes import SceneDescription, World, check_success, object_obstacle, obstacles
 
 _TIME_LIMIT = 60.0  # [s] of the arm's motion, after which a person would have stopped it
 
@@ -28,6 +30,7 @@ _FAILURES: dict[type[Exception], Outcome] = {
     ModelError: Outcome.GENERATION_FAILED,
     NotConvergedError: Outcome.IK_NOT_CONVERGED,
     JointLimitError: Outcome.UNREACHABLE_POSE,
+    CollisionError: Outcome.COLLISION,
     MotionError: Outcome.LIMITS_VIOLATED,
 }
 """Errors that end an episode, not the program."""
@@ -142,7 +145,8 @@ def _attempt(
     path = notes.path.mean
     _require_on_table(bench.scene, path)
     with notes.timed("plan"):
-        stages = plan_motion(bench.kinematics, bench.robot, bench.scene.task, path, _yaw(bench, view))
+        turns, around = _turns(bench, view), _surroundings(bench, view)
+        stages = plan_motion(bench.kinematics, bench.robot, bench.scene.task, path, turns, around)
     notes.duration = sum(stage.trajectory.duration for stage in stages)
     notes.metrics["path_length"] = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     if notes.duration > _TIME_LIMIT:
@@ -157,24 +161,35 @@ def _carry_out(
 ) -> Verdict:
     execution = execute(world, arm, stages, observer=observer)
     if len(execution.carried):
-        notes.metrics["tracking_error"] = _farthest_from(path, execution.carried)
+        notes.metrics["tracking_error"] = farthest_from(path, execution.carried)
     return execution.failure or check_success(world, (arm.body.id,))
 
 
 def _required_frames(bench: Bench, view: View) -> dict[str, Frame]:
-    """The frames that the model and the grasp need; fails where one was not seen."""
-    for name in dict.fromkeys([*bench.model.frame_kinds, bench.scene.task.pick]):
+    """The frames that the model and the task need; fails where one was not seen."""
+    task = bench.scene.task
+    rules = [rule.frame for rule in (task.start_yaw, task.end_yaw) if rule is not None]
+    for name in dict.fromkeys([*bench.model.frame_kinds, task.pick, *rules]):
         found = view.find(name)
         if isinstance(found, NotSeen):
             raise _EpisodeFailedError(Verdict(Outcome.OBJECT_NOT_SEEN, f"{name}: {found.reason}"))
     return {name: view.frames[name] for name in bench.model.frame_kinds}
 
 
-def _yaw(bench: Bench, view: View) -> float:
-    seen = view.find(bench.scene.task.pick)
-    if isinstance(seen, NotSeen):
-        raise _EpisodeFailedError(Verdict(Outcome.OBJECT_NOT_SEEN, f"{seen.name}: {seen.reason}"))
-    return grasp_yaw(seen.frame.angle, seen.symmetry)
+def _turns(bench: Bench, view: View) -> tuple[ToolTurn, ...]:
+    """How the tool may be turned, as far as what was seen decides it."""
+    home = bench.kinematics.forward(np.array(bench.robot.home)).rotation
+    preferred = float(np.arctan2(home[1, 0], home[0, 0]))
+    return turn_choices(bench.scene.task, view.frames, preferred)
+
+
+def _surroundings(bench: Bench, view: View) -> Surroundings:
+    """What the arm must not hit, where it was seen."""
+    scene, pick = bench.scene, bench.scene.task.pick
+    frames = view.frames | {item.name: item.frame for item in view.others}
+    around = obstacles(scene, {name: frame for name, frame in frames.items() if name != pick})
+    part = object_obstacle(scene, pick, frames[pick]) if scene.task.grips else None
+    return Surroundings(around, part)
 
 
 def _require_on_table(scene: SceneDescription, path: Array) -> None:
@@ -185,15 +200,6 @@ def _require_on_table(scene: SceneDescription, path: Array) -> None:
         x, y = path[outside[0]]
         detail = f"at ({x:.3f}, {y:.3f}) m it is not above the table"
         raise _EpisodeFailedError(Verdict(Outcome.PATH_LEAVES_WORKSPACE, detail))
-
-
-def _farthest_from(path: Array, points: Array) -> float:
-    """Largest distance of the points from the polygon through the path [m]."""
-    start, step = path[:-1], np.diff(path, axis=0)
-    squared = np.maximum((step**2).sum(axis=1), 1e-18)
-    along = ((points[:, None] - start) * step).sum(axis=2) / squared
-    nearest = start + np.clip(along, 0.0, 1.0)[..., None] * step
-    return float(np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1).max())
 
 
 def _result(

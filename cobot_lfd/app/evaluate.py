@@ -35,11 +35,12 @@ def bench_for(job: Job) -> Bench:
         DescriptionError: If there is no such scene or robot.
         ModelError: If the model cannot be read.
     """
-    robot = load_robot(job.robot)
+    scene = load_scene(job.scene)
+    robot = load_robot(job.robot, scene.task.tool)
     return Bench(
         scene_name=job.scene,
         robot_name=job.robot,
-        scene=load_scene(job.scene),
+        scene=scene,
         robot=robot,
         kinematics=Kinematics(robot),
         model=TaskParameterisedGMM.load(job.model),

@@ -1,5 +1,6 @@
 """The only way from a scene to its frames: through the picture that its camera takes."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
 from perception import detect
-from scenes import World, object_models
+from scenes import SceneDescription, World, object_model, object_models
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,11 +20,13 @@ class View:
         picture: Red, green, blue, uint8, shape (height, width, 3).
         detections: The objects that were found in it.
         missing: The objects that were looked for and not found.
+        others: Objects that were found, but have nothing to do with the task.
     """
 
     picture: NDArray[np.uint8]
     detections: tuple[Detection, ...]
     missing: tuple[NotSeen, ...]
+    others: tuple[Detection, ...] = ()
 
     @property
     def frames(self) -> dict[str, Frame]:
@@ -38,16 +41,28 @@ class View:
 
 
 def perceive(world: World, *, covered: bool = False) -> View:
-    """Take a picture of the scene and find the objects in it.
+    """Take a picture of the scene and find the objects in it; what stands outside its view is known.
 
     Args:
         world: The scene in the simulator.
         covered: Whether something covers the camera's lens.
     """
+    scene = world.description
     picture = world.take_picture(covered=covered)
-    found = detect(picture, world.description.camera.camera, object_models(world.description))
+    found = detect(picture, scene.camera.camera, object_models(scene))
+    task_relevant = [item for item in found if scene.objects[item.name].frame]
     return View(
         picture,
-        tuple(item for item in found if isinstance(item, Detection)),
-        tuple(item for item in found if isinstance(item, NotSeen)),
+        (*(item for item in task_relevant if isinstance(item, Detection)), *_known(scene)),
+        tuple(item for item in task_relevant if isinstance(item, NotSeen)),
+        tuple(item for item in found if isinstance(item, Detection) and item not in task_relevant),
     )
+
+
+def _known(scene: SceneDescription) -> Iterator[Detection]:
+    """The objects out of the camera's view, which stand where the scene's file says."""
+    for name, frame in scene.known_frames.items():
+        model = object_model(name, scene.objects[name])
+        corners = np.column_stack([frame.apply(model.outline), np.full(len(model.outline), model.z)])
+        contour = scene.camera.camera.project(corners)
+        yield Detection(name, frame, 1, np.zeros((3, 3)), 1.0, contour)

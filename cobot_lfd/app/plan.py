@@ -1,19 +1,29 @@
 """A planar path to the whole motion: approach, grasp, lift, carry, lower, release, retreat, return."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from cobot_lfd.app.geometry import densify, farthest_from
 from cobot_lfd.arrays import Array
+from cobot_lfd.errors import MotionError
 from cobot_lfd.motion import JointLimits, JointPath, JointTrajectory, move, time_path
-from cobot_lfd.tool import tool_above
-from robots import Kinematics, RobotDescription
+from cobot_lfd.obstacle import Obstacle
+from cobot_lfd.pose import Pose
+from cobot_lfd.tool import ToolTurn, tool_above
+from robots import CollisionCheck, CollisionError, Kinematics, KinematicsError, RobotDescription, thinned
 from scenes import Task
 
 _STEP = 0.004  # [m] between neighbouring poses of a straight line
 _SETTLING_TIME = 0.2  # [s] that the gripper is given beyond the time in which its fingers can close
 # A cobot beside a person moves well below what its joints could do.
 _VELOCITY_SHARE, _ACCELERATION_SHARE, _JERK_SHARE = 0.5, 0.2, 0.1
+_MOST_DEVIATION = 0.001  # [m] by which the planned tool may leave the generated path
+_N_DEVIATIONS = 60  # places along the carry at which that is checked
+_CHECK_EVERY = 3  # poses of a line between two that are checked for collisions
+_N_FREE = 25  # postures of a free movement that are checked for collisions
+_MOST_ATTEMPTS = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,54 +43,156 @@ class Stage:
     holding: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Surroundings:
+    """What the arm must not hit, as far as it was seen.
+
+    Attributes:
+        obstacles: What stands around, without the part.
+        part: The part that is carried, where it is before; None where nothing is.
+    """
+
+    obstacles: tuple[Obstacle, ...] = ()
+    part: Obstacle | None = None
+
+
 def plan_motion(
-    kinematics: Kinematics, robot: RobotDescription, task: Task, path: Array, yaw: float
+    kinematics: Kinematics,
+    robot: RobotDescription,
+    task: Task,
+    path: Array,
+    turns: Sequence[ToolTurn],
+    surroundings: Surroundings | None = None,
 ) -> tuple[Stage, ...]:
     """The motion that carries a part along a path.
+
+    Where the first choice cannot be carried out, the others are tried: another turn of the tool, another
+    branch of the inverse kinematics, and at last a carry lifted to the height at which the tool travels.
 
     Args:
         kinematics: Of the robot.
         robot: The robot, which waits in its parked posture.
         task: Heights at which the part is grasped, carried and released.
         path: Where the tool carries the part [m], shape (T, 2).
-        yaw: Direction of the tool from the grasp to the release [rad].
+        turns: How the tool may be turned, the best first.
+        surroundings: What the arm must not hit; by default nothing is looked at.
 
     Returns:
         The stages, each from rest to rest, in their order.
 
     Raises:
-        KinematicsError: If the tool cannot reach a pose of the motion.
-        MotionError: If the motion breaks a limit of the joints.
+        KinematicsError: If the tool cannot reach a pose of the motion, or would hit something; what is told is
+            what the first choice met.
+        MotionError: If the motion breaks a limit of the joints, or leaves the path.
     """
+    surroundings = surroundings or Surroundings()
+    first: KinematicsError | None = None
+    for chosen, turn, posture in _choices(robot, task, turns):
+        with kinematics.collisions(surroundings.obstacles) as check:
+            try:
+                lines = _lines(kinematics, check, chosen, path, turn, posture, surroundings.part)
+                stages = _stages(robot, chosen, lines)
+                _require_free(check, stages[0].trajectory, stages[-1].trajectory)
+            except KinematicsError as error:
+                first = first or error
+                continue
+        _require_near(kinematics, path, next(s for s in stages if s.name == "carry").trajectory)
+        return stages
+    raise first or MotionError("the task leaves no way to turn the tool; give it one.")
+
+
+def _choices(
+    robot: RobotDescription, task: Task, turns: Sequence[ToolTurn]
+) -> Iterator[tuple[Task, ToolTurn, Array]]:
+    """Task, turn and posture to start from, in the order in which they are tried."""
+    postures = [np.array(posture) for posture in (robot.home, *robot.branches)]
+    choices = [(task, turn, postures[0]) for turn in turns]
+    choices += [(task, turns[0], posture) for posture in postures[1:]] if turns else []
+    lifted = _lifted(task)
+    limit = _MOST_ATTEMPTS if lifted is None else _MOST_ATTEMPTS - 2
+    yield from choices[:limit]
+    if lifted is not None:
+        yield from ((lifted, turn, postures[0]) for turn in turns[:2])
+
+
+def _lifted(task: Task) -> Task | None:
+    """The task with its carry lifted; None where that would be the same, or something else is pushed."""
+    if not task.grips or task.travel_height <= task.carry_height:
+        return None
+    return task.model_copy(update={"carry_height": task.travel_height})
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Lines:
+    """The joint paths of the straight and planar parts of the motion [rad]."""
+
+    down: Array
+    up: Array
+    carry: Array
+    lower: Array
+    leave: Array
+
+
+def _lines(
+    kinematics: Kinematics,
+    check: CollisionCheck,
+    task: Task,
+    path: Array,
+    turn: ToolTurn,
+    posture: Array,
+    part: Obstacle | None,
+) -> _Lines:
+    """Inverse kinematics and collision checks, part by part, so that what is impossible fails early."""
+    start, goal = path[0], path[-1]
+
+    def line(joints: Array, height: float, next_height: float, point: Array, yaw: float) -> Array:
+        corners = np.array([[*point, height], [*point, next_height]])
+        return follow(joints, [tool_above(p[:2], p[2], yaw) for p in densify(corners, _STEP)])
+
+    def follow(joints: Array, poses: Sequence[Pose]) -> Array:
+        found = kinematics.follow(poses, joints)
+        hit = check.first_hit(thinned(found, _CHECK_EVERY))
+        if hit is not None:
+            raise CollisionError(hit)
+        return found
+
+    grasping = tool_above(start, task.grasp_height, turn.start)
+    above = kinematics.inverse(tool_above(start, task.travel_height, turn.start), posture)
+    down = line(above, task.travel_height, task.grasp_height, start, turn.start)
+    if part is not None:
+        check.hold(part, grasping.inverse() @ part.pose)
+    up = line(down[-1], task.grasp_height, task.carry_height, start, turn.start)
+    yaws = turn.along(path)
+    poses = [tool_above(p, task.carry_height, yaw) for p, yaw in zip(path, yaws, strict=True)]
+    carry = follow(up[-1], poses)
+    lower = line(carry[-1], task.carry_height, task.release_height, goal, turn.end)
+    check.release()
+    leave = line(lower[-1], task.release_height, task.travel_height, goal, turn.end)
+    return _Lines(down, up, carry, lower, leave)
+
+
+def _stages(robot: RobotDescription, task: Task, lines: _Lines) -> tuple[Stage, ...]:
     limits = robot.joint_limits.scaled(
         velocity=_VELOCITY_SHARE, acceleration=_ACCELERATION_SHARE, jerk=_JERK_SHARE
     )
-    start, goal = path[0], path[-1]
-    open_, closed = robot.gripper.maximum_opening, 0.0
-    grip_time = open_ / robot.gripper.speed + _SETTLING_TIME
     parked = np.array(robot.parked)
-
-    def line(joints: Array, corners: list[list[float]]) -> Array:
-        poses = [tool_above(point[:2], point[2], yaw) for point in _densify(np.array(corners))]
-        return kinematics.follow(poses, joints)
-
-    above = kinematics.inverse(tool_above(start, task.carry_height, yaw), np.array(robot.home))
-    down = line(above, [[*start, task.carry_height], [*start, task.grasp_height]])
-    up = down[::-1]
-    carry = kinematics.follow([tool_above(point, task.carry_height, yaw) for point in path], up[-1])
-    lower = line(carry[-1], [[*goal, task.carry_height], [*goal, task.release_height]])
-    leave = lower[::-1]
-    return (
-        Stage("approach", move(parked, down[0], limits), open_, False),
-        Stage("descend", _timed(down, limits), open_, False),
-        Stage("grasp", JointTrajectory.hold(down[-1], grip_time), closed, True),
-        Stage("lift", _timed(up, limits), closed, True),
-        Stage("carry", _timed_samples(carry, limits), closed, True),
-        Stage("lower", _timed(lower, limits), closed, True),
-        Stage("release", JointTrajectory.hold(lower[-1], grip_time), open_, False),
-        Stage("retreat", _timed(leave, limits), open_, False),
-        Stage("return", move(leave[-1], parked, limits), open_, False),
-    )
+    open_ = robot.gripper.maximum_opening
+    released = open_ if task.release_opening is None else min(task.release_opening, open_)
+    grip_time = robot.gripper.closing_time + _SETTLING_TIME
+    held, closed = task.grips, 0.0 if task.grips else open_
+    stages = [
+        Stage("approach", move(parked, lines.down[0], limits), open_, False),
+        Stage("descend", _timed(lines.down, limits), open_, False),
+        Stage("grasp", JointTrajectory.hold(lines.down[-1], grip_time), closed, held),
+        Stage("lift", _timed(lines.up, limits), closed, held),
+        Stage("carry", _timed_samples(lines.carry, limits), closed, held),
+        Stage("lower", _timed(lines.lower, limits), closed, held),
+        Stage("release", JointTrajectory.hold(lines.lower[-1], grip_time), released, False),
+        Stage("retreat", _timed(lines.leave, limits), released, False),
+        Stage("return", move(lines.leave[-1], parked, limits), released, False),
+    ]
+    gripping = {"grasp", "release"}
+    return tuple(stage for stage in stages if task.grips or stage.name not in gripping)
 
 
 def _timed(waypoints: Array, limits: JointLimits) -> JointTrajectory:
@@ -92,8 +204,20 @@ def _timed_samples(waypoints: Array, limits: JointLimits) -> JointTrajectory:
     return time_path(JointPath.through(waypoints, parameters=np.arange(len(waypoints))), limits)
 
 
-def _densify(corners: Array) -> Array:
-    """Points on the polygon through the corners [m], shape (M, 3), no farther apart than ``_STEP``."""
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
-    places = np.linspace(0.0, lengths[-1], max(2, int(np.ceil(lengths[-1] / _STEP)) + 1))
-    return np.column_stack([np.interp(places, lengths, column) for column in corners.T])
+def _require_free(check: CollisionCheck, *movements: JointTrajectory) -> None:
+    for movement in movements:
+        hit = check.first_hit(movement.positions(np.linspace(0.0, movement.duration, _N_FREE)))
+        if hit is not None:
+            raise CollisionError(hit)
+
+
+def _require_near(kinematics: Kinematics, path: Array, carry: JointTrajectory) -> None:
+    """Refuse a motion whose tool leaves the path."""
+    joints = carry.positions(np.linspace(0.0, carry.duration, _N_DEVIATIONS))
+    tools = np.array([kinematics.forward(positions).position[:2] for positions in joints])
+    deviation = farthest_from(path, tools)
+    if deviation > _MOST_DEVIATION:
+        raise MotionError(
+            f"the planned motion leaves the path by {1e3 * deviation:.2f} mm; "
+            f"{1e3 * _MOST_DEVIATION:.0f} mm are allowed."
+        )

@@ -12,11 +12,11 @@ from cobot_lfd.app.perceive import View, perceive
 from cobot_lfd.app.recorder import Recorder
 from cobot_lfd.app.script import HAND_STREAM, write_script
 from cobot_lfd.app.store import list_episodes, load_episode, save_episode
+from cobot_lfd.app.turns import turn_choices
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome, Verdict
-from cobot_lfd.tool import grasp_yaw
 from robots import Arm, load_robot
-from scenes import SceneDescription, World, check_success, load_scene, object_models
+from scenes import SceneDescription, World, check_success, load_scene
 
 _SAMPLE_PERIOD = 0.01  # [s] between two recorded samples
 
@@ -32,7 +32,8 @@ def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpiso
     Raises:
         DescriptionError: If there is no such scene or robot.
     """
-    scene, robot = load_scene(scene_name), load_robot(robot_name)
+    scene = load_scene(scene_name)
+    robot = load_robot(robot_name, scene.task.tool)
     with World(scene, seed) as world:
         arm = Arm(world.client, robot)
         view = perceive(world)
@@ -63,12 +64,11 @@ def lead(world: World, arm: Arm, hand: Hand, recorder: Recorder) -> None:
 def _scripted_hand(scene: SceneDescription, world: World, arm: Arm, seed: int) -> ScriptedHand:
     """A hand for this scene; it stands for a person, who sees where the objects are."""
     frames = world.true_frames()
-    symmetry = {model.name: model.symmetry for model in object_models(scene)}[scene.task.pick]
     script = write_script(
         scene.task,
         frames,
         start=arm.state().world_from_tool,
-        yaw=grasp_yaw(frames[scene.task.pick].angle, symmetry),
+        turn=turn_choices(scene.task, frames)[0],
         maximum_opening=arm.description.gripper.maximum_opening,
         time_step=scene.physics.time_step,
         rng=np.random.default_rng([seed, HAND_STREAM]),

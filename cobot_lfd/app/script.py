@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame
 from cobot_lfd.pose import Pose
-from cobot_lfd.tool import tool_above
+from cobot_lfd.tool import ToolTurn, pointing_down, tool_above
 from scenes import Task
 
 HAND_STREAM = 1
@@ -51,7 +51,7 @@ def write_script(
     frames: Mapping[str, Frame],
     *,
     start: Pose,
-    yaw: float,
+    turn: ToolTurn,
     maximum_opening: float,
     time_step: float,
     rng: np.random.Generator,
@@ -62,21 +62,24 @@ def write_script(
         task: What is to be done, and how a hand varies.
         frames: Where the objects really are; the person sees the table.
         start: Pose of the tool at the start.
-        yaw: Direction in which the tool grasps [rad].
+        turn: How the tool is turned from the grasp to the release.
         maximum_opening: Opening of the open gripper [m].
         time_step: Time between two ticks [s].
         rng: Source of the variation.
     """
     carry = _carry(task, frames, time_step, rng)
     writer = _Writer(time_step, start, maximum_opening)
-    writer.move_to(tool_above(carry[0], task.carry_height, yaw))
-    writer.move_to(tool_above(carry[0], task.grasp_height, yaw))
-    writer.grip(0.0)
-    writer.move_to(tool_above(carry[0], task.carry_height, yaw))
-    writer.follow(carry, task.carry_height)
-    writer.move_to(tool_above(carry[-1], task.release_height, yaw))
-    writer.grip(maximum_opening)
-    writer.move_to(tool_above(carry[-1], task.carry_height, yaw))
+    opening = maximum_opening if task.release_opening is None else task.release_opening
+    writer.move_to(tool_above(carry[0], task.travel_height, turn.start))
+    writer.move_to(tool_above(carry[0], task.grasp_height, turn.start))
+    if task.grips:
+        writer.grip(0.0)
+        writer.move_to(tool_above(carry[0], task.carry_height, turn.start))
+    writer.follow(carry, task.carry_height, turn.along(carry))
+    if task.grips:
+        writer.move_to(tool_above(carry[-1], task.release_height, turn.end))
+        writer.grip(opening)
+    writer.move_to(tool_above(carry[-1], task.travel_height, turn.end))
     return writer.script()
 
 
@@ -107,12 +110,12 @@ class _Writer:
         self._pose = goal
         self._rest(_PAUSE)
 
-    def follow(self, path: Array, height: float) -> None:
-        """The planar carry along a path [m], shape (M, 2), then a pause."""
+    def follow(self, path: Array, height: float, yaws: Array) -> None:
+        """The planar carry along a path [m], shape (M, 2), with yaws [rad], shape (M,), then a pause."""
         positions = np.column_stack([path, np.full(len(path), height)])
-        rotations = Rotation.from_matrix(np.repeat(self._pose.rotation[None], len(path), axis=0))
-        self._parts.append((positions, rotations, self._opening, True))
-        self._pose = Pose(positions[-1], self._pose.rotation)
+        matrices = np.array([pointing_down(yaw) for yaw in yaws])
+        self._parts.append((positions, Rotation.from_matrix(matrices), self._opening, True))
+        self._pose = Pose(positions[-1], matrices[-1])
         self._rest(_PAUSE)
 
     def grip(self, opening: float) -> None:

@@ -1,0 +1,197 @@
+"""How a tool takes hold of a part in the simulation, by fingers or by suction."""
+
+from typing import Any, Protocol
+
+import numpy as np
+import pybullet
+
+from robots.body import RobotBody
+from robots.gripper import GripperDescription, NoGripper, ParallelGripper, SuctionGripper
+
+_EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
+_LOST = 0.005  # [m]; a part that has come this far off the cup has lost it
+_TOUCHING = 0.002  # [m]; a cup's lip gives way by so much
+
+
+class Grip(Protocol):
+    """What takes hold."""
+
+    def command(self, opening: float) -> None:
+        """Close (0) or open to a width [m]."""
+
+    def update(self) -> None:
+        """Do what must be done before each step of the simulation."""
+
+    def opening(self) -> float:
+        """The width to which it is open [m]."""
+        ...
+
+    def holds_something(self) -> bool:
+        """Whether its own sensor says that it holds a part."""
+        ...
+
+
+def make_grip(client: Any, body: RobotBody, gripper: GripperDescription) -> Grip:
+    """The grip that a description describes, open."""
+    match gripper:
+        case ParallelGripper():
+            return Fingers(client, body, gripper)
+        case SuctionGripper():
+            return Suction(client, body, gripper)
+        case NoGripper():
+            return NoGrip(gripper)
+
+
+class Fingers:
+    """Two fingers that move against each other and hold by friction."""
+
+    def __init__(self, client: Any, body: RobotBody, gripper: ParallelGripper) -> None:
+        self._client, self._body, self._gripper = client, body, gripper
+        self._closing = False
+        for finger in body.fingers:
+            client.resetJointState(body.id, finger, 0.5 * gripper.maximum_opening)
+        self._couple()
+        for link in body.fingertips:
+            client.changeDynamics(body.id, link, lateralFriction=gripper.friction, spinningFriction=0.002)
+
+    def command(self, opening: float) -> None:
+        """Move the fingers towards an opening [m] with the speed and force that the gripper has."""
+        self._closing = opening < _EMPTY_OPENING
+        for finger in self._body.fingers:
+            self._client.setJointMotorControl2(
+                self._body.id,
+                finger,
+                pybullet.POSITION_CONTROL,
+                targetPosition=0.5 * opening,
+                force=self._gripper.force,
+                maxVelocity=0.5 * self._gripper.speed,
+            )
+
+    def update(self) -> None:
+        """Nothing to do: the motors keep doing what they were told."""
+
+    def opening(self) -> float:
+        """Distance between the fingers [m]."""
+        fingers = self._client.getJointStates(self._body.id, self._body.fingers)
+        return float(sum(finger[0] for finger in fingers))
+
+    def holds_something(self) -> bool:
+        """Whether something keeps the fingers apart that are closing, as the gripper's own encoder tells."""
+        return self._closing and self.opening() > _EMPTY_OPENING
+
+    def _couple(self) -> None:
+        """Let the two fingers move by equal amounts, as the belt in the hand makes them."""
+        gear = self._client.createConstraint(
+            self._body.id,
+            self._body.fingers[0],
+            self._body.id,
+            self._body.fingers[1],
+            jointType=pybullet.JOINT_GEAR,
+            jointAxis=[1, 0, 0],
+            parentFramePosition=[0, 0, 0],
+            childFramePosition=[0, 0, 0],
+        )
+        self._client.changeConstraint(gear, gearRatio=-1, erp=0.1, maxForce=50)
+
+
+class Suction:
+    """A cup that sticks to a face that it touches near its axis."""
+
+    def __init__(self, client: Any, body: RobotBody, gripper: SuctionGripper) -> None:
+        self._client, self._body, self._gripper = client, body, gripper
+        self._cup = body.links[gripper.link]
+        self._sucking = False
+        self._constraint: int | None = None
+        self._held = -1
+        self._cup_from_part = np.zeros(3)
+
+    def command(self, opening: float) -> None:
+        """Suck (0) or let go."""
+        self._sucking = opening <= 0.0
+        if not self._sucking:
+            self._let_go()
+
+    def update(self) -> None:
+        """Stick to what the cup has come to touch; let go of what was torn off."""
+        if self._constraint is not None and self._displacement() > _LOST:
+            self._let_go()
+        if self._sucking and self._constraint is None:
+            self._try_to_stick()
+
+    def opening(self) -> float:
+        """0 while it sucks."""
+        return 0.0 if self._sucking else self._gripper.maximum_opening
+
+    def holds_something(self) -> bool:
+        """Whether there is a vacuum."""
+        return self._constraint is not None
+
+    def _try_to_stick(self) -> None:
+        position, rotation = self._cup_pose()
+        axis = rotation[:, 2]
+        for contact in self._client.getContactPoints(bodyA=self._body.id, linkIndexA=self._cup):
+            point, normal = np.array(contact[5]), np.array(contact[7])
+            off_axis = np.linalg.norm(np.cross(point - position, axis))
+            aligned = abs(normal @ axis) > np.cos(np.deg2rad(self._gripper.alignment_deg))
+            if contact[8] < _TOUCHING and aligned and off_axis < self._gripper.radius:
+                self._stick(int(contact[2]))
+                return
+
+    def _stick(self, part: int) -> None:
+        cup_from_world = self._client.invertTransform(*self._cup_state())
+        pose = self._client.getBasePositionAndOrientation(part)
+        cup_from_part = self._client.multiplyTransforms(*cup_from_world, *pose)
+        self._constraint = self._client.createConstraint(
+            self._body.id,
+            self._cup,
+            part,
+            -1,
+            jointType=pybullet.JOINT_FIXED,
+            jointAxis=[0, 0, 0],
+            parentFramePosition=cup_from_part[0],
+            childFramePosition=[0, 0, 0],
+            parentFrameOrientation=cup_from_part[1],
+        )
+        self._client.changeConstraint(self._constraint, maxForce=self._gripper.force)
+        self._held, self._cup_from_part = part, np.array(cup_from_part[0])
+
+    def _let_go(self) -> None:
+        if self._constraint is not None:
+            self._client.removeConstraint(self._constraint)
+            self._constraint = None
+
+    def _displacement(self) -> float:
+        """How far the part has come off its place at the cup [m]."""
+        position, rotation = self._cup_pose()
+        part, _ = self._client.getBasePositionAndOrientation(self._held)
+        return float(np.linalg.norm(position + rotation @ self._cup_from_part - part))
+
+    def _cup_state(self) -> tuple[Any, Any]:
+        state = self._client.getLinkState(self._body.id, self._cup)
+        return state[0], state[1]
+
+    def _cup_pose(self) -> tuple[Any, Any]:
+        position, orientation = self._cup_state()
+        rotation = np.array(self._client.getMatrixFromQuaternion(orientation)).reshape(3, 3)
+        return np.array(position), rotation
+
+
+class NoGrip:
+    """A tool that takes hold of nothing."""
+
+    def __init__(self, gripper: NoGripper) -> None:
+        self._opening = gripper.maximum_opening
+
+    def command(self, opening: float) -> None:
+        """Nothing to do."""
+
+    def update(self) -> None:
+        """Nothing to do."""
+
+    def opening(self) -> float:
+        """A number that never changes [m]."""
+        return self._opening
+
+    def holds_something(self) -> bool:
+        """Never."""
+        return False
