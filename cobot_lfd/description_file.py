@@ -1,4 +1,4 @@
-"""Reading TOML files of robots and scenes: a fault is told with file, key, what was given and what is allowed."""
+"""Reading TOML files of robots and scenes: a fault is told with file, key, value and what is allowed."""
 
 import tomllib
 from collections.abc import Callable, Mapping

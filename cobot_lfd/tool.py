@@ -43,7 +43,7 @@ class ToolTurn:
         return cls(yaw, yaw)
 
     def along(self, path: ArrayLike) -> Array:
-        """The yaw at each point of a path [m], shape (M, 2): [rad], shape (M,); it starts and ends smoothly."""
+        """The yaw [rad], shape (M,), at each point of a path [m], shape (M, 2); it changes smoothly."""
         lengths = np.linalg.norm(np.diff(np.asarray(path, dtype=np.float64), axis=0), axis=1)
         shares = np.concatenate([[0.0], np.cumsum(lengths)]) / max(lengths.sum(), 1e-12)
         u = np.clip((shares - self.begins) / max(self.ends - self.begins, 1e-12), 0.0, 1.0)

@@ -56,7 +56,7 @@ class CollisionCheck:
             self._part = None
 
     def first_hit(self, path: Array) -> str | None:
-        """What is hit first along a joint path [rad], shape (M, n), as a sentence's end; None if nothing is."""
+        """What is hit first along a joint path [rad], shape (M, n), as a sentence; None if nothing is."""
         for posture in path:
             hits = self._touching(posture) - self._allowed
             if hits:

@@ -15,6 +15,7 @@ from robots.gripper import GripperDescription
 from robots.parts import Mount, Part
 
 _FOLDER = Path(__file__).parent
+_TOOLS = _FOLDER / "tools"
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Numbers = tuple[float, ...]
@@ -114,7 +115,7 @@ def robot_names() -> tuple[str, ...]:
 
 def tool_names() -> tuple[str, ...]:
     """Names of the tools that can be mounted on every robot."""
-    return tuple(sorted(file.stem for file in (_FOLDER / "tools").glob("*.toml")))
+    return tuple(sorted(file.stem for file in _TOOLS.glob("*.toml")))
 
 
 def load_robot(name: str, tool: str = "gripper") -> RobotDescription:
@@ -141,5 +142,5 @@ def _with_tool(content: dict[str, Any], tool: str) -> dict[str, Any]:
     """A robot's description with that of a tool in it."""
     if tool == "gripper" and "gripper" in content:
         return content
-    mounted = read_toml(_FOLDER / "tools" / f"{tool}.toml")
+    mounted = read_toml(_TOOLS / f"{tool}.toml")
     return content | {key: mounted[key] for key in ("tool_link", "gripper", "parts")}

@@ -8,7 +8,7 @@ from scenes.description import SceneDescription
 from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription
 from scenes.union import union_outlines
 
-_N_CIRCLE = 32  # corners of the polygon that stands for a circle
+_N_CIRCLE = 16  # corners of the polygon that stands for a circle; its sides must not be too short to be seen
 _SAME = 1e-9  # [m]
 _SAME_HEIGHT = 1e-6  # [m]
 
@@ -41,8 +41,10 @@ def _seen_from_above(item: ObjectDescription) -> tuple[Array, list[Array], float
             return _rectangle(*item.outer_size), [_rectangle(*item.inner_size)], item.height, 0.0
         case Ball():
             angles = 2 * np.pi * np.arange(_N_CIRCLE) / _N_CIRCLE
-            circle = 0.5 * item.diameter * np.column_stack([np.cos(angles), np.sin(angles)])
-            return circle, [], 0.5 * item.diameter, 0.5 * item.diameter
+            radius = 0.5 * item.diameter
+            same_area = radius * np.sqrt(2 * np.pi / _N_CIRCLE / np.sin(2 * np.pi / _N_CIRCLE))
+            circle = same_area * np.column_stack([np.cos(angles), np.sin(angles)])
+            return circle, [], radius, radius
         case Assembly():
             tops = [box for box in item.boxes if box.high[2] > item.height - _SAME_HEIGHT]
             outline, *holes = union_outlines([(*box.low[:2], *box.high[:2]) for box in tops])

@@ -17,11 +17,13 @@ class Waypoint(DescriptionModel):
         frame: Name of the object.
         position: In the object's frame [m].
         noise: Standard deviation by which a person misses it, along x and along y [m].
+        bow: Sideways bulge of the way to it [m]; by default that of the hand.
     """
 
     frame: str
     position: tuple[float, float] = (0.0, 0.0)
     noise: NotNegative = 0.0
+    bow: Annotated[Range | None, BeforeValidator(as_range)] = None
 
 
 class Hand(DescriptionModel):

@@ -14,6 +14,7 @@ from cobot_lfd.frame import Frame
 from cobot_lfd.method import PathModel
 from cobot_lfd.motion import check_limits
 from cobot_lfd.outcome import Outcome
+from cobot_lfd.tool import ToolTurn
 from robots import Kinematics, load_robot
 from scenes import World, load_scene
 
@@ -37,7 +38,7 @@ def episode(bench: Bench) -> EpisodeRun:
 @pytest.fixture(scope="module")
 def stages() -> tuple[Stage, ...]:
     with Kinematics(PANDA) as kinematics:
-        return plan_motion(kinematics, PANDA, SCENE.task, CURVE, 0.2)
+        return plan_motion(kinematics, PANDA, SCENE.task, CURVE, [ToolTurn.none(0.2)])
 
 
 def changed(bench: Bench, **changes: Any) -> Bench:
@@ -102,7 +103,7 @@ def test_planning_needs_no_network(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(socket, "socket", refuse)
     with Kinematics(PANDA) as kinematics:
-        assert plan_motion(kinematics, PANDA, SCENE.task, CURVE, 0.2)
+        assert plan_motion(kinematics, PANDA, SCENE.task, CURVE, [ToolTurn.none(0.2)])
 
 
 class PathTo:

@@ -14,6 +14,7 @@ from cobot_lfd.app.store import list_episodes, load_episode
 from cobot_lfd.errors import DataError
 from cobot_lfd.frame import Frame
 from cobot_lfd.pose import Pose
+from cobot_lfd.tool import ToolTurn
 from robots import ArmState, Kinematics, load_robot
 from scenes import load_scene
 
@@ -26,7 +27,13 @@ TICK = 0.01  # [s]
 def script(seed: int) -> Script:
     rng = np.random.default_rng(seed)
     return write_script(
-        SCENE.task, FRAMES, start=START, yaw=0.1, maximum_opening=0.08, time_step=TICK, rng=rng
+        SCENE.task,
+        FRAMES,
+        start=START,
+        turn=ToolTurn.none(0.1),
+        maximum_opening=0.08,
+        time_step=TICK,
+        rng=rng,
     )
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cobot_lfd.pose import Pose
-from cobot_lfd.tool import grasp_yaw, pointing_down, tool_above
+from cobot_lfd.tool import ToolTurn, equal_yaws, pointing_down, tool_above
 from robots import JointLimitError, Kinematics, NotConvergedError, load_robot
 from robots.body import RobotBody, connect
 
@@ -99,9 +99,21 @@ def test_the_tool_points_down_and_along_its_yaw(yaw: float) -> None:
     assert np.linalg.det(rotation) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(("symmetry", "turn"), [(1, np.pi), (2, np.pi), (4, np.pi / 2), (3, np.pi / 3)])
-def test_a_grasp_takes_the_nearest_of_the_yaws_that_look_the_same(symmetry: int, turn: float) -> None:
-    for angle in np.linspace(-3.0, 3.0, 13):
-        yaw = grasp_yaw(angle, symmetry, preferred=0.2)
-        assert abs(yaw - 0.2) <= turn / 2 + 1e-9
-        assert (angle - yaw) / turn == pytest.approx(round((angle - yaw) / turn), abs=1e-9)
+@pytest.mark.parametrize("turns", [1, 2, 3, 4])
+def test_the_yaws_that_do_equally_well_are_evenly_spread_and_the_nearest_comes_first(turns: int) -> None:
+    for direction in np.linspace(-3.0, 3.0, 13):
+        yaws = np.array(equal_yaws(direction, turns, preferred=0.2))
+        assert len(yaws) == turns
+        assert abs(yaws[0] - 0.2) <= np.pi / turns + 1e-9
+        assert_allclose(np.exp(1j * turns * (yaws - direction)), 1.0, atol=1e-9)
+        assert_allclose(np.diff(np.sort(yaws)), 2 * np.pi / turns)
+
+
+def test_a_turn_goes_smoothly_from_its_start_to_its_end_and_is_done_on_the_way() -> None:
+    path = np.column_stack([np.linspace(0.0, 1.0, 1001), np.zeros(1001)])
+    yaws = ToolTurn(0.3, -1.2, 0.2, 0.7).along(path)
+    assert_allclose(yaws[:200], 0.3)
+    assert_allclose(yaws[701:], -1.2)
+    assert (np.diff(yaws) <= 0.0).all()
+    assert np.abs(np.diff(yaws, 2)).max() < 1e-4
+    assert_allclose(ToolTurn.none(0.4).along(path), 0.4)

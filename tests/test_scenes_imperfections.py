@@ -82,8 +82,9 @@ def test_noise_is_new_in_every_picture_and_the_same_in_every_world() -> None:
 
 @pytest.mark.simulator
 def test_a_picture_too_large_for_the_renderer_is_told() -> None:
-    with World(SCENE, 0, renderer="egl") as world, pytest.raises(
-        CobotError, match=r"'egl' draws at most 1024 x 768 px; a picture of 1280 x 960 px"
+    with (
+        World(SCENE, 0, renderer="egl") as world,
+        pytest.raises(CobotError, match=r"'egl' draws at most 1024 x 768 px; a picture of 1280 x 960 px"),
     ):
         world.take_picture(camera=camera_with(width=1280, height=960))
 

@@ -17,6 +17,7 @@ from toppra import algorithm, constraint
 from toppra.interpolator import AbstractGeometricPath  # type: ignore[import-untyped]  # As above.
 
 from cobot_lfd.app.plan import plan_motion
+from cobot_lfd.app.turns import turn_choices
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.model import TaskParameterisedGMM
 from cobot_lfd.motion import JointLimits, JointPath, limit_ratios, time_path
@@ -114,7 +115,7 @@ def scene_paths(
             with World(scene, seed + i) as world:
                 frames = world.true_frames()
             curve = model.reproduce({name: frames[name] for name in model.frame_kinds}).mean
-            stages = plan_motion(kinematics, robot, scene.task, curve, 0.0)
+            stages = plan_motion(kinematics, robot, scene.task, curve, turn_choices(scene.task, frames))
             paths += [section.path for stage in stages for section in stage.trajectory.sections]
     return [path for path in paths if path.degree > 1]
 
@@ -166,7 +167,8 @@ def main(
         model: A learnt model (made by 'cobot-lfd fit'), to measure the joint paths of its task as well.
     """
     toppra.setup_logging("ERROR")
-    description, rng = load_robot(robot), np.random.default_rng(seed)
+    description = load_robot(robot, load_scene(scene).task.tool)
+    rng = np.random.default_rng(seed)
     sheet = without_position_limits(description.joint_limits)
     tight = replace(sheet, acceleration=sheet.acceleration / 4, jerk=10 * sheet.acceleration / 4)
     families = {

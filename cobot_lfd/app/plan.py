@@ -81,8 +81,8 @@ def plan_motion(
         The stages, each from rest to rest, in their order.
 
     Raises:
-        KinematicsError: If the tool cannot reach a pose of the motion, or would hit something; what is told is
-            what the first choice met.
+        KinematicsError: If the tool cannot reach a pose of the motion, or would hit something; it says what
+            the first choice met.
         MotionError: If the motion breaks a limit of the joints, or leaves the path.
     """
     surroundings = surroundings or Surroundings()
@@ -142,7 +142,7 @@ def _lines(
     posture: Array,
     part: Obstacle | None,
 ) -> _Lines:
-    """Inverse kinematics and collision checks, part by part, so that what is impossible fails early."""
+    """Inverse kinematics and collision checks, part by part; what is impossible fails early."""
     start, goal = path[0], path[-1]
 
     def line(joints: Array, height: float, next_height: float, point: Array, yaw: float) -> Array:

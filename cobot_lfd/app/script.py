@@ -152,7 +152,8 @@ def _carry(task: Task, frames: Mapping[str, Frame], time_step: float, rng: np.ra
     u = np.linspace(0.0, 1.0, n)
     warp = rng.uniform(-task.hand.timing_warp, task.hand.timing_warp)
     share = minimum_jerk(u + warp / (2 * np.pi) * np.sin(2 * np.pi * u))
-    path = _through(corners, rng.uniform(*task.hand.bow, size=len(corners) - 1))(share)
+    bows = [rng.uniform(*(w.bow or task.hand.bow)) for w in task.waypoints[1:]]
+    path = _through(corners, np.array(bows))(share)
     return np.asarray(path + _tremor(n, task.hand.tremor, time_step, rng))
 
 
