@@ -1,7 +1,7 @@
 """Regions of the picture that have an object's colour, told from the table and from the other objects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
@@ -17,6 +17,8 @@ _LEAST_SHARE = (
     0.4  # Of the colour difference between table and object: from here on a pixel may be the object.
 )
 _MOST_DEVIATION = 0.6  # Of a pixel from the line between table and object, as a share of the difference.
+_MOST_UNLIKE = 0.35  # Of a region's colour from the expected; coloured light makes 0.1, red for orange 0.5.
+_SMALLEST = 3  # Fewer averaged pixels are noise; an object has sixty and more.
 _EVERY = 5  # Pixels from one to the next where a part of them is enough.
 _N_NOISE = 5.0  # Standard deviations of the table's colour that never count as an object.
 
@@ -34,6 +36,7 @@ class Region:
         area: Number of pixels of the full picture [px].
         colour: Its typical colour, red, green, blue in 0..255, shape (3,).
         at_border: Whether it touches the picture's edge.
+        unlikeness: How far its colour is from the expected one; 1 is as far as that is from the table's.
     """
 
     hull: Array
@@ -41,6 +44,12 @@ class Region:
     area: float
     colour: Array
     at_border: bool
+    unlikeness: float = 0.0
+
+    @property
+    def right_colour(self) -> bool:
+        """Whether its colour is the expected one, give or take the light's."""
+        return self.unlikeness < _MOST_UNLIKE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,18 +85,22 @@ def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segm
     table = table_colour(pixels[::_EVERY])
     if table is None:
         return None
-    labels = _label(pixels, table, models).reshape(height, width)
-    regions = tuple(_regions(labels == i, small, scale) for i in range(len(models)))
-    return Segmentation(table, regions, scale)
+    colours = list(dict.fromkeys(tuple(model.colour) for model in models))
+    labels = _label(pixels, table, np.array(colours)).reshape(height, width)
+    of_colour = {
+        colour: _regions(labels == i, small, scale, np.array(colour), table)
+        for i, colour in enumerate(colours)
+    }
+    return Segmentation(table, tuple(of_colour[tuple(model.colour)] for model in models), scale)
 
 
-def _label(pixels: Array, table: Array, models: Sequence[ObjectModel]) -> NDArray[np.int_]:
-    """For each pixel the number of the object whose colour it has, -1 for none, shape (n,)."""
+def _label(pixels: Array, table: Array, colours: Array) -> NDArray[np.int_]:
+    """For each pixel the number of the colour that it has, shape (m, 3), or -1 for none, shape (n,)."""
     difference = (chromaticity(pixels) - chromaticity(table)) @ _PLANE
     best = np.full(len(pixels), _MOST_DEVIATION)
     labels = np.full(len(pixels), -1)
-    for i, model in enumerate(models):
-        expected = (chromaticity(model.colour) - chromaticity(table)) @ _PLANE
+    for i, colour in enumerate(colours):
+        expected = (chromaticity(colour) - chromaticity(table)) @ _PLANE
         expected /= expected @ expected
         share = difference @ expected
         noise = 1.4826 * float(np.median(np.abs(share[::_EVERY])))
@@ -100,14 +113,25 @@ def _label(pixels: Array, table: Array, models: Sequence[ObjectModel]) -> NDArra
     return labels
 
 
-def _regions(mask: Array, small: Array, scale: int) -> tuple[Region, ...]:
-    """The connected parts of a mask, the largest first."""
+def _unlikeness(colour: Array, expected: Array, table: Array) -> float:
+    """How far a colour is from the expected one, compared with how far that is from the table's."""
+    origin, goal = chromaticity(table), chromaticity(expected)
+    return float(np.linalg.norm(chromaticity(colour) - goal) / np.linalg.norm(goal - origin))
+
+
+def _regions(
+    mask: NDArray[np.bool_], small: Array, scale: int, expected: Array, table: Array
+) -> tuple[Region, ...]:
+    """The connected parts of a mask, the largest first, those of another colour last."""
     count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
-    order = sorted(range(1, count), key=lambda i: -stats[i, cv2.CC_STAT_AREA])
-    return tuple(
-        _region(np.asarray(labels), i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
-        for i in order
-    )
+    parts = np.asarray(labels)
+    found = []
+    for i in range(1, count):
+        if stats[i, cv2.CC_STAT_AREA] < _SMALLEST:
+            continue
+        region = _region(parts, i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
+        found.append(replace(region, unlikeness=_unlikeness(region.colour, expected, table)))
+    return tuple(sorted(found, key=lambda region: (not region.right_colour, -region.area)))
 
 
 def _region(

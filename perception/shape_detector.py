@@ -9,6 +9,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
+from perception.assignment import assign, quality
 from perception.coarse_pose import guess_poses
 from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
@@ -47,9 +48,13 @@ def detect(
     segmentation = segment(picture, models, _scale(models, camera))
     if segmentation is None:
         return tuple(NotSeen(m.name, "the picture is too dark; is the camera covered?") for m in models)
-    return tuple(
-        _detect_one(picture, camera, model, segmentation, regions)
+    tried = [
+        [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
         for model, regions in zip(models, segmentation.regions, strict=True)
+    ]
+    return tuple(
+        _told(model, camera, chosen, results)
+        for model, chosen, results in zip(models, assign(models, tried), tried, strict=True)
     )
 
 
@@ -60,20 +65,16 @@ def _scale(models: Sequence[ObjectModel], camera: Camera) -> int:
     return int(np.clip(min(sizes) // _COARSE_SIZE, 1, 4))
 
 
-def _detect_one(
-    picture: Picture,
-    camera: Camera,
-    model: ObjectModel,
-    segmentation: Segmentation,
-    regions: Sequence[Region],
+def _told(
+    model: ObjectModel, camera: Camera, chosen: OutlineFit | None, tried: Sequence[OutlineFit | str]
 ) -> Detection | NotSeen:
-    """The best fit among the regions of the object's colour."""
-    tried = [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
-    fits = [result for result in tried if isinstance(result, OutlineFit)]
-    if fits:
-        return _detection(model, camera, max(fits, key=_quality))
-    reasons = [result for result in tried if isinstance(result, str)]
-    return NotSeen(model.name, [*reasons, f"nothing in the picture has the colour of the {model.name}."][0])
+    """What is said of an object for which a fit was chosen, or none."""
+    if chosen is not None:
+        return _detection(model, camera, chosen)
+    if not tried:
+        return NotSeen(model.name, f"nothing in the picture has the colour of the {model.name}.")
+    faults = [result for result in tried if isinstance(result, str)]
+    return NotSeen(model.name, [*faults, "what looks like it is another object of the same colour."][0])
 
 
 def _try(
@@ -89,16 +90,14 @@ def _try(
             return (
                 f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
             )
+        if not region.right_colour:
+            return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
         fits = [fit_outline(picture, camera, model, mixture, start) for start in starts]
-        best = max((fit for fit in fits if fit is not None), key=_quality, default=None)
+        best = max((fit for fit in fits if fit is not None), key=quality, default=None)
         fault = _fault(model, camera, region, segmentation.scale, best)
         if best is not None and not fault:
             return best
     return fault
-
-
-def _quality(fit: OutlineFit) -> float:
-    return fit.found / (0.1 + fit.residual)
 
 
 def _where(region: Region) -> str:

@@ -13,7 +13,7 @@ from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
 from perception import detect
 from perception.picture import Picture
-from scenes import World, load_scene, object_models
+from scenes import SceneDescription, World, load_scene, object_models
 from scenes.rendering import Renderer
 
 pytestmark = pytest.mark.simulator
@@ -264,3 +264,48 @@ def test_an_outline_without_symmetry_tells_the_whole_angle(angle: float) -> None
     off = errors(found, frame)
     assert np.linalg.norm(off[:2]) < 0.05e-3
     assert abs(off[2]) < np.deg2rad(0.1)
+
+
+def crowded(**others: dict[str, object]) -> SceneDescription:
+    """The scene with further boxes, all with more room to stand."""
+    values = SCENE.model_dump()
+    for name, changes in others.items():
+        values["objects"][name] = values["objects"]["cube"] | changes
+    return SceneDescription.model_validate(values | {"centre_distance": 0.16})
+
+
+def test_objects_of_one_colour_are_told_apart_by_their_size() -> None:
+    scene = crowded(plate={"size": (0.09, 0.06, 0.02)})
+    for seed in range(3):
+        with World(scene, seed) as world:
+            picture, truth = world.take_picture(), world.true_frames()
+        for found in detect(picture, CAMERA, object_models(scene)):
+            assert np.linalg.norm(errors(found, truth[found.name])[:2]) < 1e-3
+
+
+def test_objects_that_look_the_same_are_named_from_left_to_right() -> None:
+    scene = crowded(other={})
+    for seed in range(3):
+        with World(scene, seed) as world:
+            picture, truth = world.take_picture(), world.true_frames()
+        left, right = sorted((truth["cube"], truth["other"]), key=lambda frame: -frame.position[1])
+        cube, _, other = detect(picture, CAMERA, object_models(scene))
+        assert np.linalg.norm(errors(cube, left)[:2]) < 1e-3
+        assert np.linalg.norm(errors(other, right)[:2]) < 1e-3
+
+
+def test_one_thing_is_not_two_objects() -> None:
+    twin = replace(MODELS[0], name="twin")
+    cube, seen = detect(shot(0).picture, CAMERA, [MODELS[0], twin])
+    assert isinstance(cube, Detection)
+    assert seen == NotSeen("twin", "what looks like it is another object of the same colour.")
+
+
+def test_distractors_of_another_colour_or_size_change_nothing() -> None:
+    scene = crowded(orange={"colour": "orange"}, crate={"size": (0.1, 0.1, 0.03)})
+    models = [model for model in object_models(scene) if model.name in ("cube", "container")]
+    for seed in range(3):
+        with World(scene, seed) as world:
+            picture, truth = world.take_picture(), world.true_frames()
+        for found in detect(picture, CAMERA, models):
+            assert np.linalg.norm(errors(found, truth[found.name])[:2]) < 1e-3
