@@ -102,7 +102,7 @@ def _known(episode: RecordedEpisode) -> tuple[SceneDescription | None, RobotDesc
     scene, robot = None, None
     try:
         scene = load_scene(episode.scene)
-        robot = load_robot(episode.robot)
+        robot = load_robot(episode.robot, scene.task.tool)
     except DescriptionError:
         pass
     return scene, robot

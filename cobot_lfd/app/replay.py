@@ -51,8 +51,10 @@ def replay(episode: RecordedEpisode, by: By, *, observer: Observer | None = None
     """
     if episode.joint_positions.shape[1] == 0 or len(episode.times) < 2:
         raise DataError(f"the episode of seed {episode.seed} has no joint states; it cannot be replayed.")
-    with World(load_scene(episode.scene), episode.seed) as world:
-        return replay_in(world, Arm(world.client, load_robot(episode.robot)), episode, by, observer=observer)
+    scene = load_scene(episode.scene)
+    robot = load_robot(episode.robot, scene.task.tool)
+    with World(scene, episode.seed) as world:
+        return replay_in(world, Arm(world.client, robot), episode, by, observer=observer)
 
 
 def replay_in(

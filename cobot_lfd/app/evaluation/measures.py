@@ -16,6 +16,7 @@ from cobot_lfd.learning.metrics import (
     turns,
 )
 from cobot_lfd.pose import Pose
+from cobot_lfd.tool import ToolTurn
 from scenes import SceneDescription
 
 REACHED = 0.05
@@ -65,7 +66,7 @@ def hand_path(scene: SceneDescription, frames: Mapping[str, Frame], seed: int) -
         scene.task,
         frames,
         start=Pose.identity(),
-        yaw=0.0,
+        turn=ToolTurn.none(0.0),
         maximum_opening=0.0,
         time_step=scene.physics.time_step,
         rng=np.random.default_rng([seed, HAND_STREAM]),

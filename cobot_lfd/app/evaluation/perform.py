@@ -17,7 +17,7 @@ from cobot_lfd.app.illustrate import drawn_view
 from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.errors import CobotError
 from cobot_lfd.outcome import Outcome, Verdict
-from robots import Kinematics, RobotDescription, load_robot
+from robots import Kinematics, load_robot
 from scenes import load_scene
 
 _PICTURE_WIDTH = 480  # [px]; readable on a phone, and a thousand of them in a report of a few megabytes
@@ -97,13 +97,14 @@ def labelled(trial: Trial, result: EpisodeResult) -> EpisodeResult:
 
 @lru_cache(maxsize=64)
 def _bench(scene: str, robot: str, perturbation: Perturbation, contender: Contender) -> Bench:
-    description = load_robot(robot)
+    described = load_scene(scene)
+    tool = described.task.tool
     return Bench(
         scene_name=scene,
         robot_name=robot,
-        scene=perturbation.of_scene(load_scene(scene)),
-        robot=description,
-        kinematics=_kinematics(robot),
+        scene=perturbation.of_scene(described),
+        robot=load_robot(robot, tool),
+        kinematics=_kinematics(robot, tool),
         model=learnt(contender, perturbation.demonstrations),
         covered=perturbation.covered,
         misjudge=perturbation.of_view,
@@ -111,9 +112,8 @@ def _bench(scene: str, robot: str, perturbation: Perturbation, contender: Conten
 
 
 @lru_cache(maxsize=8)
-def _kinematics(robot: str) -> Kinematics:
-    description: RobotDescription = load_robot(robot)
-    return Kinematics(description)
+def _kinematics(robot: str, tool: str) -> Kinematics:
+    return Kinematics(load_robot(robot, tool))
 
 
 def _measures(bench: Bench, run: EpisodeRun) -> dict[str, float]:
