@@ -1,19 +1,20 @@
 """The steps of a fit, by the settings."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cobot_lfd.errors import DataError
 from cobot_lfd.frame import FrameKind
+from cobot_lfd.learning.approach import learn_approach
 from cobot_lfd.learning.course import Course, fit_course
 from cobot_lfd.learning.criteria import fulfilled
 from cobot_lfd.learning.data import TaskData, TaskDemonstration, collect
 from cobot_lfd.learning.em import EMFit, fit_mixture
 from cobot_lfd.learning.encoding import Encoding, MixtureEncoding, fit_rings, tabulate
 from cobot_lfd.learning.frame_product import FrameProduct
-from cobot_lfd.learning.generate import find_visits
+from cobot_lfd.learning.generate import find_visits, ring_directions
 from cobot_lfd.learning.identification import Certainty, Finding, identify_by_bearing
 from cobot_lfd.learning.selection import select_frames
 from cobot_lfd.learning.settings import (
@@ -126,9 +127,48 @@ def _generator(
     if settings.generator is Generator.COURSE:
         course = fit_course(data, oriented, settings.course)
         return course, course.notes()
+    chosen, notes = _choose_components(data, oriented, settings, rng)
+    product, more = _frame_product(data, oriented, chosen, rng)
+    return product, [*notes, *more]
+
+
+def _frame_product(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> tuple[FrameProduct, list[str]]:
+    """The paper's generator, with the chosen additions."""
     encoding, notes = _encoding(data, oriented, settings, rng)
     visits = find_visits(data) if settings.ring_direction is RingDirection.SEQUENCE else None
-    return FrameProduct(encoding, tuple(oriented), visits, settings.jerk_weight), notes
+    approach = None
+    if settings.approach_angle:
+        profile = encoding.profile(data.times)
+        looks = {
+            ring: ring_directions(profile, data.scenes, oriented, data.times, visits, ring)
+            for ring, is_oriented in enumerate(oriented)
+            if not is_oriented
+        }
+        approach = learn_approach(data.paths, data.scenes, oriented, looks)
+    return FrameProduct(encoding, tuple(oriented), visits, approach, settings.jerk_weight), notes
+
+
+def _choose_components(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> tuple[LearningSettings, list[str]]:
+    """The number of Gaussians that predicts left-out demonstrations best."""
+    if not settings.component_choices or len(data.paths) < 3:
+        return settings, []
+    errors = {}
+    for k in settings.component_choices:
+        tried = replace(settings, em=replace(settings.em, n_components=k))
+        apart = []
+        for held_out in range(len(data.paths)):
+            product, _ = _frame_product(data.without(held_out), oriented, tried, rng)
+            mean, _ = product.generate(data.scenes.only([held_out]), len(data.times))
+            apart.append(np.linalg.norm(mean[0] - data.paths[held_out], axis=-1).mean())
+        errors[k] = float(np.mean(apart))
+    best = min(errors, key=errors.__getitem__)
+    told = ", ".join(f"{k}: {1000 * error:.1f} mm" for k, error in errors.items())
+    note = f"{best} Gaussians predict left-out demonstrations best ({told})."
+    return replace(settings, em=replace(settings.em, n_components=best)), [note]
 
 
 def _encoding(

@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
+from cobot_lfd.learning.approach import ApproachAngles
 from cobot_lfd.learning.data import Scenes, TaskData
 from cobot_lfd.learning.directions import nearest_directions, sequence_directions
 from cobot_lfd.learning.product import (
@@ -46,6 +49,7 @@ def gather(
     oriented: Sequence[bool],
     times: Array,
     visits: Visits | None,
+    approach: ApproachAngles | None = None,
 ) -> Information:
     """The product of all frames' Gaussians and of the rings' stand-ins.
 
@@ -55,29 +59,33 @@ def gather(
         oriented: Which frames are oriented.
         times: Normalised times, shape (T,).
         visits: Rings look along this sequence; None: towards the nearest frame (paper, Table 1).
+        approach: Turns the rings' directions by what was learnt; None: leaves them.
     """
-    means = oriented_means(profile, scenes)
-    total: Information | None = None
+    parts = []
     for frame, is_oriented in enumerate(oriented):
         if is_oriented:
-            part = oriented_information(profile, scenes, frame)
+            parts.append(oriented_information(profile, scenes, frame))
         else:
-            directions = (
-                nearest_directions(scenes, means, oriented, frame)
-                if visits is None
-                else sequence_directions(
-                    scenes,
-                    _landmarks(profile, scenes, means, oriented, frame),
-                    visits.order,
-                    _past(times, visits, frame),
-                    frame,
-                )
-            )
-            part = ring_information(profile, scenes, frame, directions)
-        total = part if total is None else total + part
-    if total is None:
-        raise ValueError("a scene needs at least one frame.")
-    return total
+            directions = ring_directions(profile, scenes, oriented, times, visits, frame)
+            turned = directions if approach is None else approach.turn(scenes, frame, directions)
+            parts.append(ring_information(profile, scenes, frame, turned))
+    return reduce(add, parts)
+
+
+def ring_directions(
+    profile: Profile,
+    scenes: Scenes,
+    oriented: Sequence[bool],
+    times: Array,
+    visits: Visits | None,
+    ring: int,
+) -> Array:
+    """Which way a ring looks, shape (S, d, T); arguments as for ``gather``."""
+    means = oriented_means(profile, scenes)
+    if visits is None:
+        return nearest_directions(scenes, means, oriented, ring)
+    landmarks = _landmarks(profile, scenes, means, oriented, ring)
+    return sequence_directions(scenes, landmarks, visits.order, _past(times, visits, ring), ring)
 
 
 def _past(times: Array, visits: Visits, frame: int) -> NDArray[np.bool_]:

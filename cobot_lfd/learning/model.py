@@ -12,6 +12,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.errors import ModelError
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning import storage
+from cobot_lfd.learning.approach import ApproachAngles
 from cobot_lfd.learning.course import Course
 from cobot_lfd.learning.data import Scenes, TaskDemonstration, TaskFrame, stack_scenes
 from cobot_lfd.learning.encoding import MixtureEncoding, TableEncoding
@@ -28,6 +29,7 @@ from cobot_lfd.learning.scene_regression import SceneRegression
 from cobot_lfd.learning.settings import LearningSettings, settings_for
 
 STORED: tuple[type, ...] = (
+    ApproachAngles,
     Certainty,
     Course,
     FeatureSet,

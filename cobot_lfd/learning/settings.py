@@ -54,7 +54,9 @@ class LearningSettings:
         bearing: Settings of the bearing likelihood ratio.
         generator: The product of the frames' Gaussians, or the regression on the whole scene.
         ring_direction: Which way a ring looks in the product.
+        approach_angle: Turn the rings' directions by the oriented frames' (planar tasks).
         jerk_weight: Penalty on jerk in following the product; 0: none.
+        component_choices: Numbers of Gaussians of which leave-one-out chooses; none: as ``em`` says.
         course: Parts of the regression on the whole scene.
         select_frames: Leave out frames that do not help.
         kinds: Kinds that the user knows; they are not put to the test.
@@ -68,7 +70,9 @@ class LearningSettings:
     bearing: BearingTest = field(default_factory=BearingTest)
     generator: Generator = Generator.COURSE
     ring_direction: RingDirection = RingDirection.SEQUENCE
+    approach_angle: bool = False
     jerk_weight: float = 0.0
+    component_choices: tuple[int, ...] = ()
     course: CourseSettings = field(default_factory=CourseSettings)
     select_frames: bool = True
     kinds: Mapping[str, FrameKind] = field(default_factory=dict)
