@@ -14,9 +14,9 @@ from cobot_lfd.arrays import Array
 from perception.silhouette import Contour
 
 _MIXED_WITHOUT_STAIRS = 2 / 3  # Mean of 4 a (1 - a) over an edge, where the covered share a is evenly spread.
-_LEAST_NOISE = 0.03  # What light, rounding and the lens leave at the least [px].
+_LEAST_NOISE = 0.04  # What light, rounding and the lens leave at the least [px].
 _NOT_SAWTOOTH = 0.5  # Variance of the stairs that does not follow the sawtooth, as a share of it.
-_SPREAD = 1.5  # Number of points over which one pixel's noise is spread.
+_SPREAD = 3.0  # Number of points over which one pixel's noise is spread.
 
 
 def stair_variance(mixed: Array) -> float:
