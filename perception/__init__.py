@@ -1,5 +1,12 @@
 """From pictures to frames: what stands where on the table, and how sure that is."""
 
+from perception.board import Board as Board
+from perception.board import BoardView as BoardView
+from perception.board import find_board as find_board
+from perception.calibration import CameraCalibration as CameraCalibration
+from perception.calibration import LensCalibration as LensCalibration
+from perception.calibration import calibrate_camera as calibrate_camera
+from perception.calibration import calibrate_lens as calibrate_lens
 from perception.markers import Marker as Marker
 from perception.markers import detect_markers as detect_markers
 from perception.shape_detector import detect as detect

@@ -134,7 +134,7 @@ def test_a_mostly_covered_object_is_not_seen(seed: int) -> None:
 @pytest.mark.parametrize("shift", [6, 14, 20, 24, 28])
 def test_a_half_covered_object_is_found_where_it_is_or_not_at_all(shift: int) -> None:
     """Whatever is covered, from whichever side, nothing is invented."""
-    for seed in range(6):
+    for seed in range(2):
         truth = shot(seed).frames["cube"]
         for direction in np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]):
             centre = CAMERA.project([*truth.position, 0.04]) + shift * direction
