@@ -11,6 +11,7 @@ from scenes.obstacles import object_obstacle as object_obstacle
 from scenes.obstacles import obstacles as obstacles
 from scenes.outlines import object_model as object_model
 from scenes.outlines import object_models as object_models
+from scenes.placement import draw_placements as draw_placements
 from scenes.success import check_success as check_success
 from scenes.task import Task as Task
 from scenes.task import YawRule as YawRule
