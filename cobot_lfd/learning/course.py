@@ -33,7 +33,7 @@ JERK_TOLERANCE = 0.025
 """The strongest smoothing is taken that raises the held-out error by less than this part ..."""
 JERK_SHIFT = 3.0
 """... and moves the path by less than this many standard deviations of the place, nearly everywhere, ..."""
-JERK_PASSING = 0.01
+JERK_PASSING = 0.003
 """... and keeps as close to the frames that it passes, but for this part of the task's size."""
 SIGHT_ERRORS = 2.0
 """Lines of sight count where they help by more than so many standard errors."""
@@ -41,8 +41,8 @@ HOLD_RANGE = (1 / 9, 3.0)
 """Smoothing leaves sure places alone more than others, within these factors on the median variance."""
 END_WEIGHT = 1e-4
 """The ends of a path are held where the regression puts them: their share of the others' variance."""
-LANDMARK_DISTANCE = 0.12
-"""A frame is a landmark if half the demonstrations pass within this part of the task's size."""
+VISITED = 0.06
+"""A frame is visited if every demonstration passes within this part of the task's size."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -171,7 +171,7 @@ def inner_landmarks(data: TaskData) -> NDArray[np.intp]:
     distance = np.linalg.norm(data.local, axis=-1)
     nearest = distance.argmin(axis=-1)
     step = np.median(nearest, axis=0) / (len(data.times) - 1)
-    close = np.median(distance.min(axis=-1), axis=0) < LANDMARK_DISTANCE * task_size(data)
+    close = distance.min(axis=-1).max(axis=0) < VISITED * task_size(data)
     inner = [j for j in np.argsort(step) if close[j] and 0.1 < step[j] < 0.9]
     landmarks = nearest[:, inner]
     ordered = (np.diff(landmarks, axis=1) > 0).all() and (landmarks > 0).all()
@@ -187,7 +187,8 @@ def _best_phases(
         choices = [(reach, no_landmarks(data)) for reach in REACHES]
         landmarks = inner_landmarks(data)
         if settings.landmarks and landmarks.shape[1]:
-            choices.insert(0, (REACHES[0], landmarks))
+            # A frame that is passed must be passed in new scenes too, whatever the mean error says.
+            choices = [(REACHES[0], landmarks)]
     best = None
     for reach, landmarks in choices:
         phases = by_phase(data.paths, landmarks, reach, N_PHASES)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.course import held_out_errors, task_size
+from cobot_lfd.learning.course import VISITED, held_out_errors, task_size
 from cobot_lfd.learning.data import TaskData
 
 EXHAUSTIVE = 4
@@ -15,8 +15,6 @@ EXHAUSTIVE = 4
 
 CONFIDENCE = 0.975
 """A set is worse than the best if a paired t-test says so at this level (one-sided)."""
-VISITED = 0.06
-"""A frame that every demonstration passes within this part of the task's size matters, whatever else."""
 
 
 def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
@@ -60,7 +58,7 @@ def select_frames(data: TaskData, oriented: Sequence[bool]) -> list[int]:
 
 
 def _visited(data: TaskData) -> set[int]:
-    """The frames that every demonstration passes closely."""
+    """The frames that every demonstration passes closely: they matter, whatever else."""
     nearest = np.linalg.norm(data.local, axis=-1).min(axis=-1).max(axis=0)
     return {int(j) for j in np.flatnonzero(nearest < VISITED * task_size(data))}
 
