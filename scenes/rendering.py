@@ -1,7 +1,10 @@
 """Pictures of the simulated scene: what its camera would see."""
 
 import importlib.util
+import subprocess
+import sys
 from collections.abc import Sequence
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -40,11 +43,33 @@ def load_renderer(client: BulletClient, renderer: Renderer) -> int | None:
     """
     if renderer == "tiny":
         return None
-    found = importlib.util.find_spec("eglRenderer")
-    plugin = client.loadPlugin(found.origin, "_eglRendererPlugin") if found and found.origin else -1
-    if plugin < 0:
+    if not egl_works():
         raise CobotError("the renderer 'egl' does not start on this machine; use the renderer 'tiny'.")
-    return int(plugin)
+    return _load_egl(client)
+
+
+@cache
+def egl_works() -> bool:
+    """Whether OpenGL by way of EGL works here.
+
+    It is tried in a process of its own: where a library is missing, PyBullet's plugin ends the process.
+    """
+    probe = "from scenes.rendering import draw_with_egl; draw_with_egl()"
+    return subprocess.run([sys.executable, "-c", probe], capture_output=True, check=False).returncode == 0
+
+
+def draw_with_egl() -> None:
+    """Draw a small picture of nothing by way of EGL; ends the process where that does not work."""
+    client = BulletClient(pybullet.DIRECT)
+    if _load_egl(client) < 0:
+        sys.exit(1)
+    client.getCameraImage(16, 16, renderer=pybullet.ER_BULLET_HARDWARE_OPENGL)
+
+
+def _load_egl(client: BulletClient) -> int:
+    """Load the plugin that ships with PyBullet; returns its number, negative where there is none."""
+    found = importlib.util.find_spec("eglRenderer")
+    return int(client.loadPlugin(found.origin, "_eglRendererPlugin")) if found and found.origin else -1
 
 
 def take_picture(

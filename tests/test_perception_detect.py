@@ -15,6 +15,7 @@ from perception import detect
 from perception.picture import Picture
 from scenes import SceneDescription, World, load_scene, object_models
 from scenes.rendering import Renderer
+from tests.renderers import needs_egl
 
 pytestmark = pytest.mark.simulator
 
@@ -51,7 +52,7 @@ def errors_of(picture: Picture, truth: dict[str, Frame]) -> Array:
     return np.column_stack([np.linalg.norm(off[:, :2], axis=1), np.abs(off[:, 2])])
 
 
-@pytest.mark.parametrize(("renderer", "n"), [("tiny", 20), ("egl", 4)])
+@pytest.mark.parametrize(("renderer", "n"), [("tiny", 20), pytest.param("egl", 4, marks=needs_egl)])
 def test_objects_are_found_where_they_are(renderer: Renderer, n: int) -> None:
     off = np.concatenate([errors_of(s.picture, s.frames) for s in (shot(i, renderer) for i in range(n))])
     assert (np.median(off, axis=0) < [0.1e-3, np.deg2rad(0.15)]).all()

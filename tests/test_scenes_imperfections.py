@@ -11,6 +11,7 @@ from perception import detect
 from scenes import World, load_scene, object_models
 from scenes.imperfections import ideal_camera, on_sensor, through_lens
 from scenes.view import CameraDescription, Lens, Sensor
+from tests.renderers import needs_egl
 
 SCENE = load_scene("pick_and_place")
 GREY = np.full((60, 80, 3), 100.0)
@@ -81,6 +82,7 @@ def test_noise_is_new_in_every_picture_and_the_same_in_every_world() -> None:
 
 
 @pytest.mark.simulator
+@needs_egl
 def test_a_picture_too_large_for_the_renderer_is_told() -> None:
     with (
         World(SCENE, 0, renderer="egl") as world,
@@ -97,3 +99,10 @@ def test_objects_can_be_put_elsewhere() -> None:
             assert_allclose(world.true_frames()[name].position, frame.position, atol=1e-9)
             assert world.true_frames()[name].angle == pytest.approx(frame.angle)
             assert abs(world.true_poses()[name].position[2]) < 1e-9
+
+
+@pytest.mark.simulator
+def test_a_renderer_that_does_not_work_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenes.rendering.egl_works", lambda: False)
+    with pytest.raises(CobotError, match=r"the renderer .egl. does not start on this machine"):
+        World(SCENE, 0, renderer="egl")

@@ -1,6 +1,6 @@
 """The simulated world: repeatable, seen as its camera says, and judged by its physics."""
 
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,11 +12,11 @@ from cobot_lfd.pose import Pose
 from scenes import SceneDescription, World, check_success, load_scene, object_models
 from scenes.boxes import blocks_of
 from scenes.rendering import Renderer
+from tests.renderers import RENDERERS
 
 pytestmark = pytest.mark.simulator
 
 SCENE = load_scene("pick_and_place")
-RENDERERS = get_args(Renderer)
 
 
 def varied(**parts: dict[str, Any]) -> SceneDescription:
@@ -177,8 +177,8 @@ def test_a_cube_that_is_held_is_no_success() -> None:
     assert verdict == Verdict(Outcome.NOT_RELEASED, "the robot touches the cube")
 
 
-def test_the_simulator_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    for renderer in RENDERERS:
-        with World(SCENE, 0, renderer=renderer) as world:
-            world.take_picture()
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_the_simulator_prints_nothing(renderer: Renderer, capfd: pytest.CaptureFixture[str]) -> None:
+    with World(SCENE, 0, renderer=renderer) as world:
+        world.take_picture()
     assert capfd.readouterr().out == ""
