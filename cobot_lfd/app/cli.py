@@ -12,7 +12,10 @@ from cobot_lfd.app.commands.exit_codes import FAILED, INTERRUPTED
 from cobot_lfd.app.commands.fit import fit
 from cobot_lfd.app.commands.listing import robots, scenes
 from cobot_lfd.app.commands.record import record
+from cobot_lfd.app.commands.replay import replay
+from cobot_lfd.app.commands.report import report
 from cobot_lfd.app.commands.run import run
+from cobot_lfd.app.commands.validate import validate
 from cobot_lfd.errors import CobotError
 
 _COMMANDS: dict[str, Callable[..., int]] = {
@@ -22,6 +25,9 @@ _COMMANDS: dict[str, Callable[..., int]] = {
     "fit": fit,
     "run": run,
     "evaluate": evaluate,
+    "report": report,
+    "replay": replay,
+    "validate": validate,
     "scenes": scenes,
     "robots": robots,
 }

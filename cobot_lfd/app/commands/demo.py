@@ -5,12 +5,14 @@ from pathlib import Path
 from cobot_lfd.app.commands.evaluate import evaluate
 from cobot_lfd.app.commands.fit import fit
 from cobot_lfd.app.commands.record import record
+from cobot_lfd.app.commands.report import report
 from cobot_lfd.app.commands.run import run
 
 _SHOWN = {
     "camera.png": "what the camera saw, with the detected frames and the generated path",
     "path.png": "the demonstrations, and the generated path with its covariance",
     "run.webm": "the arm doing it",
+    "evaluation/report.html": "the evaluation, to look at in a browser",
     "evaluation/summary.json": "how often it went well",
     "evaluation/results.jsonl": "a line per evaluated episode",
 }
@@ -56,6 +58,7 @@ def demo(
             workers=workers,
         )
     )
+    report((folder / "evaluation",))
     print("\nOpen these:")
     for name, what in _SHOWN.items():
         print(f"  {folder / name}: {what}")

@@ -25,6 +25,7 @@ def run(
     plot: Path | None = None,
     demos: Path | None = None,
     video: Path | None = None,
+    covered: bool = False,
 ) -> int:
     """Perform the task once, in the scene that the seed lays out.
 
@@ -37,8 +38,9 @@ def run(
         plot: File (.png, .svg or .pdf) for a plot of the demonstrations and the path with its covariance.
         demos: Folder of the demonstrations that are to be in the plot.
         video: File (.webm) for a video of the arm.
+        covered: Cover the camera's lens; the episode can then not succeed.
     """
-    bench = bench_for(Job(scene, robot, model))
+    bench = bench_for(Job(scene, robot, model, covered))
     with filming(video) if video else nullcontext() as film:
         episode = run_episode(bench, seed, film=film)
     print(f"seed {seed}: {episode.result.verdict.sentence}")

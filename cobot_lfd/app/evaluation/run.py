@@ -61,5 +61,6 @@ def _in_processes(where: Where, trials: Sequence[Trial]) -> Iterator[Performed]:
 def _on_cluster(where: Where, trials: Sequence[Trial]) -> Iterator[Performed]:
     task = PerformWithin(where.time_limit, where.film_failures)
     with cluster_at(where.scheduler or "") as cluster:
-        at_once = cluster.n_workers + _AHEAD
-        yield from drive(cluster.executor, task, trials, at_once=at_once, time_limit=where.time_limit)
+        # None is handed over ahead: what waits at a worker that dies would be suspected with it.
+        at_once, limit = cluster.n_workers, where.time_limit
+        yield from drive(cluster.executor, task, trials, at_once=at_once, time_limit=limit)

@@ -30,7 +30,7 @@ class Condition:
     @property
     def perturbed(self) -> str:
         """What was made harder, in words; "none" where nothing was."""
-        return ", ".join(f"{name} {value:g}" for name, value in self.perturbation) or "none"
+        return ", ".join(_in_words(name, value) for name, value in self.perturbation) or "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,6 +83,15 @@ def cells_text(cells: Sequence[Cell]) -> str:
             f"  {where}: {cell.successes} of {cell.episodes} ({cell.rate:.1%}; 95 % {low:.1%} to {high:.1%})"
         )
     return "\n".join(lines)
+
+
+def _in_words(name: str, value: float) -> str:
+    """A perturbation for people: "detection noise 8 mm"."""
+    if value is True:
+        return name
+    units = {"_mm": " mm", "_deg": "°"}
+    ending = next((ending for ending in units if name.endswith(ending)), "")
+    return f"{name.removesuffix(ending).replace('_', ' ')} {value:g}{units.get(ending, '')}"
 
 
 def _cell(condition: Condition, group: Sequence[EpisodeResult]) -> Cell:
