@@ -43,7 +43,7 @@ def to_json(report: Report) -> str:
 
 def _cell(cell: Cell) -> dict[str, Any]:
     values = asdict(cell)
-    condition = values.pop("condition")
+    condition: dict[str, Any] = values.pop("condition")
     condition["perturbation"] = dict(condition["perturbation"])
     return condition | values | {"success_rate": cell.rate}
 
