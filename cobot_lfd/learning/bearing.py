@@ -36,12 +36,12 @@ class BearingTest:
         looks: Normalised times at which the usual place of the path in another frame's axes is looked at.
     """
 
-    prior_spread: float = np.radians(5.0)
+    prior_spread: float = np.radians(4.0)
     prior_strength: float = 2.0
     outliers: float = 0.05
-    window: float = 0.03
-    margin: float = 0.55
-    doubt: float = 0.25
+    window: float = 0.06
+    margin: float = 0.45
+    doubt: float = 0.2
     nearest: float = 0.03
     looks: tuple[float, ...] = (0.25, 0.5, 0.75)
 
