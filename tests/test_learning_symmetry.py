@@ -16,7 +16,7 @@ tasks = st.sampled_from([1, 2, 3])
 
 
 def training_set(task: int, seed: int) -> list[Demonstration]:
-    made = demonstrations(TASKS[task], 4, np.random.default_rng(seed), n_steps=80)
+    made = demonstrations(TASKS[task], 4, np.random.default_rng(seed), n_steps=60)
     return [demo for demo in made if isinstance(demo, Demonstration)]
 
 
@@ -26,7 +26,7 @@ def fit(demos: list[Demonstration], method: str) -> TaskParameterisedGMM:
         return TaskParameterisedGMM.fit(demos, method=method)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seeds, tasks, methods, st.floats(-3, 3), st.floats(-2, 2))
 def test_it_does_not_matter_where_the_demonstrations_were_recorded(
     seed: int, task: int, method: str, angle: float, shift: float
@@ -44,7 +44,7 @@ def test_it_does_not_matter_where_the_demonstrations_were_recorded(
     assert_allclose(second.reproduce(scene).mean, first.reproduce(scene).mean, atol=1e-5)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seeds, tasks, methods)
 def test_the_order_of_the_demonstrations_does_not_matter(seed: int, task: int, method: str) -> None:
     demos = training_set(task, seed)
@@ -53,7 +53,7 @@ def test_the_order_of_the_demonstrations_does_not_matter(seed: int, task: int, m
     assert_allclose(second.reproduce(scene).mean, first.reproduce(scene).mean, atol=1e-5)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seeds, tasks, st.floats(0.01, 100))
 def test_the_unit_of_length_does_not_matter(seed: int, task: int, unit: float) -> None:
     demos = training_set(task, seed)
@@ -68,7 +68,7 @@ def test_the_unit_of_length_does_not_matter(seed: int, task: int, unit: float) -
     assert_allclose(second.covariance / unit**2, first.covariance, atol=1e-5)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seeds, methods, st.floats(-3, 3), st.floats(-2, 2))
 def test_moving_all_frames_moves_the_path(seed: int, method: str, angle: float, shift: float) -> None:
     model = fit(training_set(1, seed), method)
