@@ -7,10 +7,12 @@ import numpy as np
 from cobot_lfd.frame import Frame
 from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
-from scenes.boxes import blocks_of
+from scenes.boxes import Block, blocks_of
 from scenes.description import SceneDescription
+from scenes.shapes import Ball
 
 _TABLE = "table"
+_BAR_SHARE = 0.5  # of a ball's diameter; the corners of such bars stick out by a fifth of the radius
 
 
 def obstacles(description: SceneDescription, frames: Mapping[str, Frame]) -> tuple[Obstacle, ...]:
@@ -28,10 +30,20 @@ def obstacles(description: SceneDescription, frames: Mapping[str, Frame]) -> tup
 
 def object_obstacle(description: SceneDescription, name: str, frame: Frame) -> Obstacle:
     """One object that stands on the table at a frame."""
-    blocks = blocks_of(description.objects[name])
+    item = description.objects[name]
+    blocks = _bars_in(item) if isinstance(item, Ball) else blocks_of(item)
     return Obstacle(
         name,
         Pose.from_rpy([*frame.position, 0.0], [0.0, 0.0, frame.angle]),
         np.array([block.centre for block in blocks]),
         np.array([block.half_size for block in blocks]),
     )
+
+
+def _bars_in(ball: Ball) -> tuple[Block, ...]:
+    """Three bars across a ball, whose corners stick out less than those of a box round it would."""
+    radius = 0.5 * ball.diameter
+    centre = np.array([0.0, 0.0, radius])
+    thickness = np.full((3, 3), _BAR_SHARE * radius)
+    np.fill_diagonal(thickness, radius)
+    return tuple(Block(centre, half_size) for half_size in thickness)
