@@ -26,7 +26,7 @@ def connect() -> Any:
 
 
 class RobotBody:
-    """The URDF of a robot, loaded at the world's origin with its base fixed.
+    """The URDF of a robot, loaded with its base fixed.
 
     Attributes:
         client: The simulation that the body lives in.
@@ -113,13 +113,14 @@ class RobotBody:
 def _load(client: Any, description: RobotDescription, flags: int) -> int:
     """Load the arm with its tool; returns the body's number."""
     urdf = find_urdf(description.urdf, description.package)
+    placed = {"basePosition": list(description.base), "useFixedBase": True, "flags": flags}
     with quiet_output():
         if not description.parts:
-            return int(client.loadURDF(str(urdf), useFixedBase=True, flags=flags))
+            return int(client.loadURDF(str(urdf), **placed))
         with TemporaryDirectory() as folder:
             file = Path(folder) / "robot.urdf"
             file.write_text(compose(urdf, description.mount, description.parts), encoding="utf-8")
-            return int(client.loadURDF(str(file), useFixedBase=True, flags=flags))
+            return int(client.loadURDF(str(file), **placed))
 
 
 def _find(numbers: dict[str, int], name: str, kind: str, description: RobotDescription) -> int:

@@ -46,6 +46,7 @@ class RobotDescription(DescriptionModel):
         title: Maker and model, for people.
         urdf: Path of the URDF in pybullet_data or in another package.
         package: Name of the package that the URDF comes with; pybullet_data by default.
+        base: Where its base stands in the world [m].
         joints: Names of the arm's joints, from the base to the tool.
         mount: Where tools are mounted.
         parts: The tool's links by name, where it is not part of the URDF.
@@ -61,6 +62,7 @@ class RobotDescription(DescriptionModel):
     title: str
     urdf: str
     package: str | None = None
+    base: tuple[float, float, float] = (0.0, 0.0, 0.0)
     joints: Names
     mount: Mount
     parts: Annotated[Mapping[str, Part], Field(default_factory=dict)]

@@ -5,12 +5,14 @@ from typing import Any, Protocol
 import numpy as np
 import pybullet
 
+from cobot_lfd.arrays import Array
 from robots.body import RobotBody
 from robots.gripper import GripperDescription, NoGripper, ParallelGripper, SuctionGripper
 
 _EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
 _LOST = 0.005  # [m]; a part that has come this far off the cup has lost it
 _TOUCHING = 0.002  # [m]; a cup's lip gives way by so much
+_BEHIND = 0.005  # [m]; from so far inside the cup a face at its lip is looked for
 
 
 class Grip(Protocol):
@@ -127,15 +129,23 @@ class Suction:
         return self._constraint is not None
 
     def _try_to_stick(self) -> None:
-        position, rotation = self._cup_pose()
-        axis = rotation[:, 2]
-        for contact in self._client.getContactPoints(bodyA=self._body.id, linkIndexA=self._cup):
-            point, normal = np.array(contact[5]), np.array(contact[7])
-            off_axis = np.linalg.norm(np.cross(point - position, axis))
-            aligned = abs(normal @ axis) > np.cos(np.deg2rad(self._gripper.alignment_deg))
-            if contact[8] < _TOUCHING and aligned and off_axis < self._gripper.radius:
-                self._stick(int(contact[2]))
-                return
+        contacts = self._client.getContactPoints(bodyA=self._body.id, linkIndexA=self._cup)
+        touched = {int(contact[2]) for contact in contacts if contact[8] < _TOUCHING}
+        part = self._face_at_axis() if touched else None
+        if part in touched:
+            self._stick(part)
+
+    def _face_at_axis(self) -> int | None:
+        """The body that has a face across the cup's axis, at its lip; None where there is none."""
+        lip, axis = self._lip()
+        hit = self._client.rayTest((lip - _BEHIND * axis).tolist(), (lip + _TOUCHING * axis).tolist())[0]
+        aligned = -(np.array(hit[4]) @ axis) > np.cos(np.deg2rad(self._gripper.alignment_deg))
+        return int(hit[0]) if hit[0] >= 0 and aligned else None
+
+    def _lip(self) -> tuple[Array, Array]:
+        """The middle of the cup's lip in the world [m], and the direction in which the cup points."""
+        pose = self._body.tool_pose()
+        return pose.position, pose.rotation[:, 2]
 
     def _stick(self, part: int) -> None:
         cup_from_world = self._client.invertTransform(*self._cup_state())

@@ -34,13 +34,12 @@ class ParallelGripper(DescriptionModel):
 
 
 class SuctionGripper(DescriptionModel):
-    """A suction cup: it sticks to a face that it touches near its axis, and lets go when told.
+    """A suction cup: it sticks to a face that it touches at its axis, and lets go when told.
 
     It has no opening; where a number is asked for, 0 means that it sucks, anything more that it does not.
 
     Attributes:
         link: Name of the link that is the cup.
-        radius: Of the cup [m]: a contact farther from its axis does not seal.
         alignment_deg: Largest angle between the cup's axis and a face's normal [degrees].
         force: Force that it can hold [N].
         maximum_opening: Stands for letting go [m].
@@ -49,7 +48,6 @@ class SuctionGripper(DescriptionModel):
 
     kind: Literal["suction"]
     link: str
-    radius: PositiveFloat
     alignment_deg: PositiveFloat
     force: PositiveFloat
     maximum_opening: PositiveFloat = 0.01

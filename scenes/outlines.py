@@ -8,7 +8,7 @@ from scenes.description import SceneDescription
 from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription
 from scenes.union import union_outlines
 
-_N_CIRCLE = 16  # corners of the polygon that stands for a circle; its sides must not be too short to be seen
+_N_CIRCLE = 8  # corners of the polygon that stands for a circle; its sides must not be too short to be seen
 _SAME = 1e-9  # [m]
 _SAME_HEIGHT = 1e-6  # [m]
 
