@@ -1,6 +1,7 @@
 """cobot-lfd fit: demonstrations to a model."""
 
 from pathlib import Path
+from textwrap import indent
 from typing import Literal
 
 from tyro.conf import Positional
@@ -32,5 +33,6 @@ def fit(
     print(f"learnt from {len(demonstrations)} demonstrations ({method}):")
     for name, kind in model.frame_kinds.items():
         print(f"  frame {name}: {kind.value}")
+    print(indent(model.explain(), "  "))
     print(f"the model is in {out}")
     return DONE
