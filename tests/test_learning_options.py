@@ -120,3 +120,15 @@ def test_method_names_stand_for_settings() -> None:
     assert settings_for("conventional") is CONVENTIONAL
     with pytest.raises(ValueError, match="no method named 'ring'; choose one of"):
         settings_for("ring")
+
+
+def test_scikit_learns_argument_names_reach_the_mixture() -> None:
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="component")
+        model = TaskParameterisedGMM.fit(demos(), method="conventional", n_components=3, max_iter=2, tol=0.0)
+    assert "3 Gaussians, 2 iterations, stopped without converging" in model.explain()
+
+
+def test_a_negative_regularisation_is_refused() -> None:
+    with pytest.raises(ValueError, match="tol and reg_covar must not be negative"):
+        TaskParameterisedGMM.fit(demos(), method="paper", reg_covar=-1.0)

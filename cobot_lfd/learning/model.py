@@ -78,6 +78,10 @@ class TaskParameterisedGMM:
         method: str = "improved",
         settings: LearningSettings | None = None,
         frame_kinds: Mapping[str, FrameKind] | None = None,
+        tol: float | None = None,
+        max_iter: int | None = None,
+        reg_covar: float | None = None,
+        n_init: int | None = None,
         rng: np.random.Generator | None = None,
     ) -> Self:
         """Learn from demonstrations.
@@ -89,6 +93,10 @@ class TaskParameterisedGMM:
             method: "improved" (the default), "paper" (the published method) or "conventional" (TP-GMM/R).
             settings: All choices in one value; given, ``method`` is not used.
             frame_kinds: Kinds that are known; they are not put to the test.
+            tol: Gain of the mean log-likelihood at which mixtures have converged; None: as in the settings.
+            max_iter: Limit for their iterations; None: as in the settings.
+            reg_covar: Added to their variances, in units of the data's; None: as in the settings.
+            n_init: Number of starts with k-means; None: as in the settings.
             rng: For k-means initialisation only.
 
         Raises:
@@ -96,7 +104,16 @@ class TaskParameterisedGMM:
             DataError: If the demonstrations' frames differ by name.
         """
         chosen = settings_for(method) if settings is None else settings
-        chosen = replace(chosen, em=replace(chosen.em, n_components=n_components))
+        em = chosen.em
+        em = replace(
+            em,
+            n_components=n_components,
+            tol=em.tol if tol is None else tol,
+            max_iter=em.max_iter if max_iter is None else max_iter,
+            reg_covar=em.reg_covar if reg_covar is None else reg_covar,
+            n_init=em.n_init if n_init is None else n_init,
+        )
+        chosen = replace(chosen, em=em)
         if frame_kinds is not None:
             chosen = replace(chosen, kinds=dict(frame_kinds))
         learnt = learn(demonstrations, chosen, np.random.default_rng(0) if rng is None else rng)
