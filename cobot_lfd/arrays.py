@@ -19,10 +19,10 @@ def frozen_array(value: ArrayLike, name: str, shape: tuple[int | None, ...]) -> 
         ValueError: If the shape differs or a number is not finite.
     """
     array = np.array(value, dtype=np.float64)
-    wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
     if array.ndim != len(shape) or any(
         n is not None and n != m for n, m in zip(shape, array.shape, strict=True)
     ):
+        wanted = "(" + ", ".join("any" if n is None else str(n) for n in shape) + ")"
         raise ValueError(f"{name} has shape {array.shape}; it must have shape {wanted}.")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} holds numbers that are not finite; remove or repair them.")

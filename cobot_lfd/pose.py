@@ -1,5 +1,6 @@
 """A pose in space: a rotation followed by a translation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,8 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from cobot_lfd.arrays import Array, frozen_array
+
+_ORTHONORMAL = 1e-5  # by which products of a rotation's rows may differ from 0 and 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,10 +28,7 @@ class Pose:
         """Copy and check."""
         object.__setattr__(self, "position", frozen_array(self.position, "position", (3,)))
         object.__setattr__(self, "rotation", frozen_array(self.rotation, "rotation", (3, 3)))
-        if (
-            not np.allclose(self.rotation @ self.rotation.T, np.eye(3), atol=1e-6)
-            or np.linalg.det(self.rotation) < 0
-        ):
+        if not _is_rotation(self.rotation):
             raise ValueError(
                 "rotation is no rotation matrix: its rows must be orthonormal, its determinant 1."
             )
@@ -70,3 +70,20 @@ class Pose:
     def angle_to(self, other: "Pose") -> float:
         """Angle of the rotation between the two [rad]."""
         return float(Rotation.from_matrix(self.rotation.T @ other.rotation).magnitude())
+
+
+def _is_rotation(matrix: Array) -> bool:
+    """Whether a matrix is orthonormal and right-handed; thousands are checked per episode, so it is quick."""
+    x, y, z = matrix.tolist()
+    lengths_and_angles = (
+        *(_dot(x, x) - 1.0, _dot(y, y) - 1.0, _dot(z, z) - 1.0),
+        *(_dot(x, y), _dot(y, z), _dot(z, x)),
+    )
+    if max(map(abs, lengths_and_angles)) > _ORTHONORMAL:
+        return False
+    cross = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
+    return _dot(cross, z) > 0.0
+
+
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

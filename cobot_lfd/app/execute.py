@@ -46,7 +46,7 @@ def execute(
     held = False
     for stage in stages:
         arm.grip(stage.opening)
-        trace = carried if stage.name == "carry" else []
+        trace = carried if stage.name == "carry" else None
         if not _follow(world, arm, stage, must_hold=held and stage.holding, trace=trace, observer=observer):
             return Execution(Verdict(Outcome.GRASP_LOST, f"during '{stage.name}'"), _stack(carried))
         if stage.holding and not arm.holds_something():
@@ -60,14 +60,21 @@ def execute(
 
 
 def _follow(
-    world: World, arm: Arm, stage: Stage, *, must_hold: bool, trace: list[Array], observer: Observer | None
+    world: World,
+    arm: Arm,
+    stage: Stage,
+    *,
+    must_hold: bool,
+    trace: list[Array] | None,
+    observer: Observer | None,
 ) -> bool:
     """Follow one stage; False as soon as the gripper is empty though it must hold something."""
     samples = stage.trajectory.every(world.description.physics.time_step)
     for i, (position, velocity) in enumerate(zip(samples.positions, samples.velocities, strict=True)):
         arm.follow(position, velocity)
         world.step()
-        trace.append(arm.tool_position()[:2])
+        if trace is not None:
+            trace.append(arm.tool_position()[:2])
         if observer is not None:
             observer()
         if must_hold and i % _GRIP_CHECK_EVERY == 0 and not arm.holds_something():
