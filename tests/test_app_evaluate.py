@@ -259,3 +259,16 @@ def test_a_mistake_is_told_before_the_first_episode(
     options = PlanOptions(models=(model_file,), scene=("pick_and_place",), episodes=1)
     with pytest.raises(CobotError, match=message):
         options.model_copy(update=changes).plan()
+
+
+def test_the_method_in_the_documentation_learns_and_leads(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (Path(__file__).parents[1] / "docs" / "evaluation.md").read_text(encoding="utf-8")
+    code = next(block for block in text.split("```python\n")[1:] if "NearestDemonstration" in block)
+    (tmp_path / "nearest.py").write_text(code.split("```")[0])
+    monkeypatch.syspath_prepend(tmp_path)
+    demonstrations = sweep_demonstrations()
+    model = fit_method("nearest:NearestDemonstration", demonstrations)
+    for shown in demonstrations:
+        assert_allclose(model.reproduce(shown.frames).mean, shown.path, atol=1e-12)
