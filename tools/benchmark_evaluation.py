@@ -109,14 +109,18 @@ def _begin(path: Path, plan: Plan) -> RunFolder:
 def _speed(contender: Contender, folder: Path, n: int, rounds: int) -> None:
     """Episodes per second with one and with two workers, taking turns; and the time before the first."""
     rates: dict[int, list[float]] = {1: [], 2: []}
+    processor: dict[int, list[float]] = {1: [], 2: []}
+    coordinator: list[float] = []
     starts: list[float] = []
     lines = set()
     for i in range(rounds):
         for workers, measured in rates.items():
             one = _begin(folder / f"speed_{i}_{workers}", _plan(contender, n))
             ends: list[float] = []
-            begin = time.perf_counter()
+            begin, own, workers_own = time.perf_counter(), time.process_time(), _children_time()
             run(one, Where(workers=workers), report=partial(_note_time, ends))
+            processor[workers].append((_children_time() - workers_own) / n)
+            coordinator.append((time.process_time() - own) / n)
             # The first episodes of the workers carry their start-up; the rate is that of the others.
             measured.append((n - workers) / (ends[-1] - ends[workers - 1]))
             if workers == 1:
@@ -125,8 +129,18 @@ def _speed(contender: Contender, folder: Path, n: int, rounds: int) -> None:
     ratios = [two / alone for alone, two in zip(rates[1], rates[2], strict=True)]
     print(f"episodes per second: one worker {_told(rates[1])}, two workers {_told(rates[2])}")
     print(f"two workers over one, {n} episodes, {rounds} rounds taking turns: {_told(ratios)}")
+    print(
+        f"processor time of the workers per episode, start-up included: one {_told(processor[1])} s, ", end=""
+    )
+    print(f"two {_told(processor[2])} s; of the coordinator {_told(coordinator)} s")
     print(f"all {2 * rounds} runs gave the same lines: {len(lines) == 1}")
     print(f"start-up until the first episode begins: {_told(starts)} s")
+
+
+def _children_time() -> float:
+    """Processor time of the processes that have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _note_time(times: list[float], _: EpisodeResult) -> None:
