@@ -12,7 +12,7 @@ from cobot_lfd.app.evaluation.contender import Contender, fit_method, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_from_bytes, demonstrations_to_bytes
 from cobot_lfd.app.evaluation.measures import hand_path, measures_beside
 from cobot_lfd.app.evaluation.options import PlanOptions
-from cobot_lfd.app.evaluation.perform import bench_of, film, perform
+from cobot_lfd.app.evaluation.perform import bench_of, perform
 from cobot_lfd.app.evaluation.perturbation import Perturbation, Sweep
 from cobot_lfd.app.evaluation.plan import Plan
 from cobot_lfd.app.evaluation.run import Where, run
@@ -70,7 +70,9 @@ def test_the_contenders_are_told_apart(folder: RunFolder) -> None:
 def test_an_episode_can_be_filmed(plan: Plan) -> None:
     """Even one that ends before the arm moves has a picture."""
     trial = replace(plan.trial(0), perturbation=Perturbation(covered=True))
-    assert film(trial).startswith(b"\x1aE\xdf\xa3")  # how a WebM file begins
+    failed = perform(trial, film_failures=True)
+    assert failed.video.startswith(b"\x1aE\xdf\xa3")  # how a WebM file begins
+    assert failed.picture[8:12] == b"WEBP"
 
 
 def test_trials_are_the_cross_product_and_their_seeds_vary_slowest() -> None:

@@ -3,6 +3,7 @@
 import shlex
 import sys
 from pathlib import Path
+from time import monotonic
 from typing import Literal
 
 from tyro.conf import OmitArgPrefixes, Positional
@@ -100,7 +101,7 @@ def _carry_out(folder: RunFolder, where: Where, *, json: bool) -> int:
         print(f"{len(folder.plan) - n_remaining} of {len(folder.plan)} episodes are done", file=sys.stderr)
     try:
         with progress("evaluating", n_remaining) as report:
-            summary = run(folder, where, report=Teller(report))
+            summary = run(folder, where, report=Teller(report, n_remaining))
     except KeyboardInterrupt:
         print(
             f"\ncobot-lfd: interrupted; every result so far is kept. Go on with:\n"
@@ -113,18 +114,22 @@ def _carry_out(folder: RunFolder, where: Where, *, json: bool) -> int:
 
 
 class Teller:
-    """Tells each result with the success so far."""
+    """Tells each result with the success, the rate and the time left so far."""
 
-    def __init__(self, report: Reporter) -> None:
+    def __init__(self, report: Reporter, n_episodes: int) -> None:
         self._report = report
+        self._left = n_episodes
         self._done = self._successes = 0
+        self._since = monotonic()
 
     def __call__(self, result: EpisodeResult) -> None:
         """One more episode has ended."""
         self._done += 1
+        self._left -= 1
         self._successes += result.verdict.succeeded
-        rate = f"{self._successes / self._done:.0%} so far"
-        self._report(f"{result.contender}, seed {result.seed}: {result.verdict.sentence} ({rate})")
+        rate = self._done / max(monotonic() - self._since, 1e-9)
+        so_far = f"{self._successes / self._done:.0%} so far, {rate:.2f}/s, {self._left / rate:.0f} s left"
+        self._report(f"{result.contender}, seed {result.seed}: {result.verdict.sentence} ({so_far})")
 
 
 def _told(folder: RunFolder, summary: Summary) -> str:
