@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from cobot_lfd.app.episodes import RecordedEpisode
+from cobot_lfd.app.execute import Observer
 from cobot_lfd.app.hand import Hand, ScriptedHand
 from cobot_lfd.app.perceive import View, perceive
 from cobot_lfd.app.recorder import Recorder
@@ -43,11 +44,22 @@ def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpiso
         return recorder.episode(scene_name, robot_name, seed, verdict, view.picture, view.detections)
 
 
-def lead(world: World, arm: Arm, hand: Hand, recorder: Recorder) -> None:
-    """Let a hand lead the compliant arm until it is done, and record what happens."""
-    every = max(1, round(_SAMPLE_PERIOD / world.description.physics.time_step))
+def lead(
+    world: World, arm: Arm, hand: Hand, recorder: Recorder | None, *, observer: Observer | None = None
+) -> None:
+    """Let a hand lead the compliant arm until it is done.
+
+    Args:
+        world: The scene in the simulator; its time passes.
+        arm: The arm.
+        hand: Who leads.
+        recorder: What happens is recorded here; None to record nothing.
+        observer: Called after every step of the simulation.
+    """
+    time_step = world.description.physics.time_step
+    every = max(1, round(_SAMPLE_PERIOD / time_step))
     opening = arm.opening()
-    for tick in count():
+    while True:
         state = arm.state()
         action = hand.act(state)
         if action is None:
@@ -56,9 +68,11 @@ def lead(world: World, arm: Arm, hand: Hand, recorder: Recorder) -> None:
             opening = action.opening
             arm.grip(opening)
         arm.lead(action.force, action.torque)
-        if tick % every == 0:
+        if recorder is not None and round(world.time / time_step) % every == 0:
             recorder.add(world.time, state, action)
         world.step()
+        if observer is not None:
+            observer()
 
 
 def _scripted_hand(scene: SceneDescription, world: World, arm: Arm, seed: int) -> ScriptedHand:
@@ -107,7 +121,7 @@ def record_session(
         DescriptionError: If there is no such scene or robot.
         DataError: If the folder cannot be written, or holds demonstrations of another scene or robot.
     """
-    taken = _seeds_in(folder, scene_name, robot_name)
+    taken = seeds_in(folder, scene_name, robot_name)
     fresh_seeds = (seed for seed in count(first_seed) if seed not in taken)
     episodes = []
     for seed in islice(fresh_seeds, n_episodes):
@@ -119,8 +133,12 @@ def record_session(
     return episodes
 
 
-def _seeds_in(folder: Path, scene_name: str, robot_name: str) -> set[int]:
-    """Seeds of the episodes that a folder holds already."""
+def seeds_in(folder: Path, scene_name: str, robot_name: str) -> set[int]:
+    """Seeds of the episodes that a folder holds already.
+
+    Raises:
+        DataError: If it holds demonstrations of another scene or robot, or one cannot be read.
+    """
     episodes = [load_episode(file) for file in list_episodes(folder)] if folder.is_dir() else []
     for episode in episodes:
         if (episode.scene, episode.robot) != (scene_name, robot_name):

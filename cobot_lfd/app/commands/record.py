@@ -1,6 +1,7 @@
 """cobot-lfd record: demonstrations into a folder."""
 
 from pathlib import Path
+from typing import Literal
 
 from tyro.conf import Positional
 
@@ -10,19 +11,49 @@ from cobot_lfd.app.progress import progress
 from cobot_lfd.app.record import record_session
 
 
-def record(scene: Positional[str], *, out: Path, robot: str = "panda", demos: int = 6, seed: int = 0) -> int:
-    """Record demonstrations: a scripted hand leads the compliant arm through the task.
+def record(
+    scene: Positional[str],
+    *,
+    out: Path,
+    robot: str = "panda",
+    hand: Literal["scripted", "browser", "mouse"] = "scripted",
+    demos: int = 6,
+    seed: int = 0,
+    port: int | None = None,
+    host: str | None = None,
+    open: bool = True,  # noqa: A002 -- the option is called --no-open
+) -> int:
+    """Record demonstrations: a hand leads the compliant arm through the task.
 
     Args:
         scene: Name of the scene; see 'cobot-lfd scenes'.
         out: Folder for the demonstrations. What is in it already stays; seeds that it has are left out.
         robot: Name of the robot; see 'cobot-lfd robots'.
-        demos: How many demonstrations.
+        hand: Who leads: a script, a person in a browser, or one with the mouse in the simulator's window.
+        demos: How many demonstrations; in the browser one records until one ends it.
         seed: Of the first demonstration; each further one has the next.
+        port: Of the page in the browser; a free one by default.
+        host: Serve the page on this address of the machine, for other machines; it asks for a token then.
+        open: Open the page in the browser.
     """
     require_positive("demos", demos)
+    if hand == "browser":
+        return _in_browser(scene, robot, out, seed, port=port, host=host, show=open)
     with progress("recording", demos) as report:
         episodes = record_session(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
     kept = sum(episode.verdict.succeeded for episode in episodes)
     print(f"{kept} of {demos} demonstrations did the task; they are in {out}")
     return DONE if kept == demos else NOT_ALL_SUCCEEDED
+
+
+def _in_browser(
+    scene: str, robot: str, out: Path, seed: int, *, port: int | None, host: str | None, show: bool
+) -> int:
+    """The recording studio; it is imported here because it takes longer to import than all the rest."""
+    from cobot_lfd.app.studio.launch import open_studio
+
+    session = open_studio(scene, robot, out, first_seed=seed, port=port, host=host, show=show)
+    print(
+        f"{len(session.kept.episodes)} demonstrations, {len(session.kept.good)} to learn from, are in {out}"
+    )
+    return DONE

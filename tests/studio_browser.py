@@ -1,0 +1,135 @@
+"""A person at the studio's page, for tests: a real browser, real mouse and keys."""
+
+import os
+import shutil
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from cobot_lfd.app.studio.audience import Mode
+from cobot_lfd.app.studio.launch import Studio, open_studio
+from cobot_lfd.arrays import Array
+
+_FLAGS = (
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+
+
+def find_chromium() -> str:
+    """The browser's program; without one the test is skipped, or fails where it must not be skipped."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if found is None:
+        reason = "no Chromium is installed (Debian, Ubuntu: apt-get install chromium)"
+        if os.environ.get("CI") or os.environ.get("COBOT_LFD_REQUIRE_BROWSER") == "1":
+            pytest.fail(reason)
+        pytest.skip(reason)
+    return found
+
+
+def wait_for(what: Callable[[], object], seconds: float, why: str, pause: Callable[[float], object]) -> None:
+    """Wait until something holds."""
+    end = time.monotonic() + seconds
+    while not what():
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {seconds:.0f} s: {why}")
+        pause(0.05)
+
+
+@contextmanager
+def studio_at_work(folder: Path, seed: int) -> Iterator[Studio]:
+    """A studio in a thread of this process."""
+    opened: list[Studio] = []
+    failures: list[BaseException] = []
+
+    def work() -> None:
+        try:
+            open_studio("pick_and_place", "panda", folder, first_seed=seed, show=False, started=opened.append)
+        except BaseException as error:
+            failures.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        wait_for(lambda: opened or failures, 60, "the studio opens", time.sleep)
+        assert not failures, failures
+        yield opened[0]
+    finally:
+        if opened:
+            opened[0].session.close()
+        thread.join(timeout=60)
+    assert not failures, failures
+
+
+class Person:
+    """Somebody who looks at the page and moves the mouse."""
+
+    def __init__(self, browser: object, studio: Studio) -> None:
+        self.studio = studio
+        self.session = studio.session
+        self.page = browser.new_page(viewport={"width": 1100, "height": 640})  # type: ignore[attr-defined]
+        before = set(studio.server.get_clients())
+        self.page.goto(studio.address)
+        self.page.get_by_text("Start [R]").wait_for(timeout=90_000)
+        self.wait_until(lambda: set(studio.server.get_clients()) - before, "the tab is known", 60)
+        [self.tab] = set(studio.server.get_clients()) - before
+
+    def pause(self, seconds: float) -> None:
+        """Wait, while the browser goes on."""
+        self.page.wait_for_timeout(1000 * seconds)
+
+    def wait_until(self, what: Callable[[], object], why: str, seconds: float = 60) -> None:
+        """Wait until something holds."""
+        wait_for(what, seconds, why, self.pause)
+
+    def wait_for_mode(self, mode: Mode) -> None:
+        """Wait until the studio is in a mode."""
+        self.wait_until(lambda: self.session.mode is mode, f"{mode} (it is {self.session.mode})", 120)
+
+    def press(self, label: str) -> None:
+        """Press a button."""
+        self.page.get_by_text(label, exact=True).click()
+
+    def tool(self) -> Array:
+        """Where the tool is [m]; read from the simulation's last state, as shown."""
+        return np.array(self.session.stage.shown_tool)
+
+    def pixel(self, point: Array) -> tuple[float, float]:
+        """Where a point of the world is on the page [px]."""
+        camera = self.studio.server.get_clients()[self.tab].camera
+        w, x, y, z = camera.wxyz
+        local = Rotation.from_quat([x, y, z, w]).inv().apply(point - np.asarray(camera.position))
+        focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
+        u, v = focal * local[:2] / local[2] + 0.5 * np.array([camera.image_width, camera.image_height])
+        return float(u), float(v)
+
+    def drag_to(self, goal: Array, steps: int = 25, *, let_go: bool = True) -> None:
+        """Drag the handle until the tool is over a place on the table [m], shape (2,)."""
+        mouse, tool = self.page.mouse, self.tool()
+        mouse.move(*self.pixel(tool))
+        self.pause(0.1)
+        mouse.down()
+        for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, steps)):
+            mouse.move(*self.pixel(tool + share * np.array([*(goal - tool[:2]), 0.0])))
+            self.pause(0.04)
+        if let_go:
+            self.wait_until(lambda: np.linalg.norm(self.tool()[:2] - goal) < 0.015, "the tool follows", 20)
+            mouse.up()
+
+    def at_height(self, height: float) -> None:
+        """Wait until the tool is at a height [m] and rests."""
+        self.wait_until(lambda: abs(self.tool()[2] - height) < 0.006, f"the tool is at {height} m", 30)
+        self.pause(0.3)
