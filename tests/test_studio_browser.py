@@ -58,7 +58,7 @@ def demonstrate(person: Person) -> None:
 def test_a_person_teaches_the_arm_in_a_browser(
     browser: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Load, drag, record, keep, list, discard and undo, replay, learn, and let the arm do it in a new scene."""
+    """Load, drag, record, keep, list, discard, undo, replay, learn, and let the arm do it in a new scene."""
     with studio_at_work(tmp_path / "demos", seed=0) as studio:
         person = Person(browser, studio)
         person.wait_for_mode(Mode.READY)

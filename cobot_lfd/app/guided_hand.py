@@ -36,7 +36,7 @@ class GuidedHand:
 
     Attributes:
         guide: Whether the planar guide keeps the tool's height and lets it point down.
-        latencies: From the arrival of a pointer event to the force on the arm [s]; may be shared between hands.
+        latencies: From the arrival of a pointer event to the force on the arm [s]; hands may share them.
     """
 
     def __init__(

@@ -12,6 +12,7 @@ class Clock:
     """Real time for a simulation.
 
     Attributes:
+        simulated: Simulated time in all [s].
         lost: Simulated time that was given up because the simulation was too slow, in all [s].
     """
 
@@ -21,7 +22,7 @@ class Clock:
         self._simulated = 0.0
         self._start = perf_counter()
         self._marks: deque[tuple[float, float]] = deque()
-        self._total = 0.0
+        self.simulated = 0.0
 
     def restart(self) -> None:
         """Begin anew after something else took time."""
@@ -31,7 +32,7 @@ class Clock:
     def step(self) -> None:
         """A time step was simulated; wait if that was faster than real time."""
         self._simulated += self._time_step
-        self._total += self._time_step
+        self.simulated += self._time_step
         ahead = self._simulated - (perf_counter() - self._start)
         if ahead > _AHEAD:
             sleep(ahead)
@@ -51,6 +52,6 @@ class Clock:
     def _mark(self) -> None:
         now = perf_counter()
         if not self._marks or now - self._marks[-1][0] > 0.05:
-            self._marks.append((now, self._total))
+            self._marks.append((now, self.simulated))
             while now - self._marks[0][0] > _WINDOW:
                 self._marks.popleft()

@@ -73,15 +73,15 @@ class Page:
 
     def moved(self, client: Any, stage: Stage) -> None:
         """Time has passed: show the arm, the force and the joints near their limits."""
-        body = stage.arm.body
-        state = client.getLinkState(stage.robot_body, body.tool, computeForwardKinematics=True)
-        self._tool = np.array(state[4])
+        self._tool = stage.shown_tool
         with self._server.atomic():
             self._table.move(client)
             self._handle.position = self._tool
             self._plumb.show(self._tool)
             self._force.show(self._tool, self._pulled_to(stage))
-        near = self._glow.show(client, stage.robot_body, body.joints) if self._glow is not None else []
+        near = []
+        if self._glow is not None:
+            near = self._glow.show(client, stage.robot_body, stage.arm.body.joints)
         if self._panel is not None and abs(stage.world.time - self._clock_at) >= _CLOCK_EVERY:
             self._clock_at = stage.world.time
             self._panel.show_clock(stage.clock.factor, stage.world.time, near)

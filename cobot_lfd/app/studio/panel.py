@@ -114,7 +114,7 @@ class Panel:
     def _add_kept(self) -> None:
         session, gui = self._session, self._server.gui
         self._table = gui.add_markdown("")
-        self._chosen = gui.add_dropdown("Demonstration", [_NONE])
+        self._chosen: Any = gui.add_dropdown("Demonstration", [_NONE])
 
         def with_chosen(what: Callable[[int], None]) -> Callable[[], None]:
             return lambda: what(int(self._chosen.value)) if self._chosen.value != _NONE else None

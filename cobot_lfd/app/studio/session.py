@@ -80,6 +80,11 @@ class Session:
         self.stage = Stage(scene, robot, self._fresh_seed(first_seed), audience)
 
     @property
+    def latencies(self) -> list[float]:
+        """From the arrival of each pointer event to the force on the arm [s], the latest ones."""
+        return list(self.stage.latencies)
+
+    @property
     def can_undo(self) -> bool:
         """Whether something was discarded that can be brought back."""
         return bool(self._discarded)

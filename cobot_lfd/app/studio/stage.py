@@ -1,5 +1,6 @@
 """The table, the arm and the person's hand, in real time, shown to an audience."""
 
+from collections import deque
 from time import perf_counter
 from typing import Any
 
@@ -37,6 +38,9 @@ class Stage:
         hand: The person's hand; may be moved from any thread.
         clock: Of the simulation.
         touched: Whether anybody pulled since the scene was laid out.
+        audience: Who sees it.
+        shown_tool: Where the tool was when it was shown last [m], shape (3,).
+        latencies: From the arrival of a pointer event to the force on the arm [s], the latest ones.
         robot_body: Number of the body that is shown as the robot.
     """
 
@@ -44,7 +48,9 @@ class Stage:
         self, scene: SceneDescription, robot: RobotDescription, seed: int, audience: Audience
     ) -> None:
         self.scene, self.robot, self.seed = scene, robot, seed
-        self._audience = audience
+        self.audience = audience
+        self.latencies: deque[float] = deque(maxlen=10_000)
+        self.shown_tool = np.zeros(3)
         self._shown_at = 0.0
         self.clock = Clock(scene.physics.time_step)
         self.hand = self._new_hand()
@@ -74,7 +80,7 @@ class Stage:
         self.touched = False
         self.robot_body = self.arm.body.id
         self.clock.restart()
-        self._audience.scene_changed(self.world, self.robot_body, self.view)
+        self.audience.scene_changed(self.world, self.robot_body, self.view)
 
     def get_ready(self) -> None:
         """Move the arm from where it is parked to where a person takes its hand."""
@@ -122,14 +128,16 @@ class Stage:
         now = perf_counter()
         if now - self._shown_at >= _SHOWN_EVERY:
             self._shown_at = now
-            self._audience.moved(client, self)
+            state = client.getLinkState(self.robot_body, self.arm.body.tool, computeForwardKinematics=True)
+            self.shown_tool = np.array(state[4])
+            self.audience.moved(client, self)
 
     def film(self, world: World) -> Observer:
         """Show a world that belongs to someone else; called after each of its steps."""
         client = world.client
         bodies = [client.getBodyUniqueId(i) for i in range(client.getNumBodies())]
         self.robot_body = max(bodies, key=client.getNumJoints)
-        self._audience.scene_changed(world, self.robot_body, self.view)
+        self.audience.scene_changed(world, self.robot_body, self.view)
         self.clock.restart()
         return lambda: self.watch(client)
 
@@ -138,4 +146,5 @@ class Stage:
         self.observe()
 
     def _new_hand(self) -> GuidedHand:
-        return GuidedHand(self.scene.task, self.robot.gripper.maximum_opening, self.scene.physics.time_step)
+        step = self.scene.physics.time_step
+        return GuidedHand(self.scene.task, self.robot.gripper.maximum_opening, step, self.latencies)
