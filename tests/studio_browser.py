@@ -80,7 +80,7 @@ class Person:
     def __init__(self, browser: object, studio: Studio) -> None:
         self.studio = studio
         self.session = studio.session
-        self.page = browser.new_page(viewport={"width": 960, "height": 600})  # type: ignore[attr-defined]
+        self.page = browser.new_page(viewport={"width": 800, "height": 480})  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)
         self.page.get_by_text("Start [R]").wait_for(timeout=90_000)
@@ -100,8 +100,9 @@ class Person:
         self.wait_until(lambda: self.session.mode is mode, f"{mode} (it is {self.session.mode})", 120)
 
     def press(self, label: str) -> None:
-        """Press a button."""
-        self.page.get_by_text(label, exact=True).click()
+        """Press a button, where it is on the page."""
+        box = self.page.get_by_text(label, exact=True).bounding_box(timeout=60_000)
+        self.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
 
     def tool(self) -> Array:
         """Where the tool is [m]; read from the simulation's last state, as shown."""

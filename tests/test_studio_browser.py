@@ -98,11 +98,11 @@ def test_one_tab_drags_and_a_closed_tab_loses_nothing(browser: object, tmp_path:
         first.press("Start [R]")
         first.wait_for_mode(Mode.RECORDING)
         first.at_height(studio.session.stage.scene.task.carry_height)
-        goal = first.tool()[:2] + [0.05, 0.1]
+        goal = first.tool()[:2] + np.array([0.05, 0.1])
         first.drag_to(goal, let_go=False)
         assert studio.session.stage.hand.pulls
         first.wait_until(lambda: np.linalg.norm(first.tool()[:2] - goal) < 0.02, "the tool follows")
-        second.drag_to(goal - [0.0, 0.2], steps=8, let_go=False)
+        second.drag_to(goal - np.array([0.0, 0.2]), steps=8, let_go=False)
         second.pause(0.5)
         assert np.linalg.norm(first.tool()[:2] - goal) < 0.03  # the second tab did not move it
         second.page.mouse.up()

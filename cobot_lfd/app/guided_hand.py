@@ -128,7 +128,8 @@ class GuidedHand:
         self._velocity = np.zeros(3)
         self._rotation = Rotation.from_matrix(tool.rotation)
         self._yaw = float(np.arctan2(tool.rotation[1, 0], tool.rotation[0, 0]))
-        self._height = self._task.carry_height if self.guide else None
+        if self._height is None and self.guide:
+            self._height = self._task.carry_height
 
     def _set_goal(self, state: ArmState) -> None:
         """Where the tool is to go: in the plane after the pointer, up and down by the buttons."""

@@ -26,7 +26,11 @@ class ForceLine:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._line = server.scene.add_line_segments(
-            "/hand/force", np.zeros((1, 2, 3), dtype=np.float32), colors=_FORCE, thickness=4.0
+            "/hand/force",
+            np.zeros((1, 2, 3), dtype=np.float32),
+            colors=_FORCE,
+            thickness=4.0,
+            thickness_units="screen",
         )
         self._end = server.scene.add_icosphere("/hand/pointer", radius=0.012, color=_FORCE)
         self._line.visible = self._end.visible = False
@@ -46,7 +50,11 @@ class Plumb:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._line = server.scene.add_line_segments(
-            "/hand/plumb", np.zeros((1, 2, 3), dtype=np.float32), colors=_PLUMB, thickness=1.5
+            "/hand/plumb",
+            np.zeros((1, 2, 3), dtype=np.float32),
+            colors=_PLUMB,
+            thickness=1.5,
+            thickness_units="screen",
         )
         self._foot = server.scene.add_cylinder("/hand/foot", radius=0.008, height=0.001, color=_PLUMB)
 
@@ -121,7 +129,9 @@ class Paths:
     def _line(self, name: str, points: Array, colour: tuple[int, int, int], width: float) -> Any:
         lifted = np.column_stack([points, np.full(len(points), _ON_TABLE)])
         segments = np.stack([lifted[:-1], lifted[1:]], axis=1).astype(np.float32)
-        return self._server.scene.add_line_segments(name, segments, colors=colour, thickness=width)
+        return self._server.scene.add_line_segments(
+            name, segments, colors=colour, thickness=width, thickness_units="screen"
+        )
 
 
 def _ellipse(centre: Array, covariance: Array) -> Array:

@@ -16,7 +16,6 @@ from cobot_lfd.arrays import Array
 from scenes import World
 
 _HANDLE_COLOUR, _HANDLE_RADIUS = (240, 120, 20), 0.05
-_BACKGROUND = (222, 228, 233)
 _CLOCK_EVERY = 0.25  # [s] between two looks of the panel's clock
 
 
@@ -38,10 +37,9 @@ class Page:
         self._session: Session | None = None
         self._grab: Grab | None = None
         self._clock_at = -1.0
-        server.scene.configure_default_lights(
-            cast_shadow=False
-        )  # drawn in software they cost more than all else
-        server.scene.set_background_image(np.full((1, 1, 3), _BACKGROUND, dtype=np.uint8))
+        # Where the page is drawn in software, shadows and mirrored surroundings cost more than all else.
+        server.scene.configure_default_lights(cast_shadow=False)
+        server.scene.configure_environment_map(hdri=None)
         server.initial_camera.position = (1.45, -0.55, 0.95)
         server.initial_camera.look_at = (0.45, 0.12, 0.12)
 
