@@ -76,7 +76,8 @@ class Session:
         self.last: int | None = None
         self.model: TaskParameterisedGMM | None = None
         self.path: GeneratedPath | None = None
-        scene, robot = load_scene(scene_name), load_robot(robot_name)
+        scene = load_scene(scene_name)
+        robot = load_robot(robot_name, scene.task.tool)
         self.stage = Stage(scene, robot, self._fresh_seed(first_seed), audience)
 
     @property

@@ -14,10 +14,9 @@ from cobot_lfd.app.record import lead
 from cobot_lfd.app.recorder import Recorder
 from cobot_lfd.app.studio.audience import Audience
 from cobot_lfd.app.studio.clock import Clock
-from cobot_lfd.detection import Detection
+from cobot_lfd.app.turns import turn_choices
 from cobot_lfd.motion import move
 from cobot_lfd.outcome import Outcome, Verdict
-from cobot_lfd.tool import grasp_yaw
 from robots import Arm, RobotDescription
 from scenes import SceneDescription, World, check_success
 
@@ -111,11 +110,12 @@ class Stage:
         return check_success(self.world, (self.arm.body.id,), step=self._step)
 
     def align(self) -> None:
-        """Turn the tool to the part, as the camera saw it."""
-        seen = self.view.find(self.scene.task.pick)
-        if isinstance(seen, Detection):
-            yaw = float(np.arctan2(*self.arm.state().world_from_tool.rotation[1::-1, 0]))
-            self.hand.turn_to(grasp_yaw(seen.frame.angle, seen.symmetry, yaw))
+        """Turn the tool as the part, or with a part its goal, asks for, where the camera saw what decides it."""
+        if not self.view.missing:
+            rotation = self.arm.state().world_from_tool.rotation
+            yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+            turn = turn_choices(self.scene.task, self.view.frames, yaw)[0]
+            self.hand.turn_to(turn.end if self.hand.is_closed else turn.start)
 
     def observe(self) -> None:
         """After every step: wait for the clock on the wall, and show what is to be seen."""
