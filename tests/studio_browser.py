@@ -80,7 +80,7 @@ class Person:
     def __init__(self, browser: object, studio: Studio) -> None:
         self.studio = studio
         self.session = studio.session
-        self.page = browser.new_page(viewport={"width": 800, "height": 480})  # type: ignore[attr-defined]
+        self.page = browser.new_page(viewport={"width": 900, "height": 480})  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)
         self.page.get_by_text("Start [R]").wait_for(timeout=90_000)

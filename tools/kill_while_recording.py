@@ -1,6 +1,7 @@
-"""Kill a scripted recording of five episodes at random moments, and look whether anything that was kept is lost.
+"""Kill a scripted recording of five episodes at random moments, and look whether anything kept is lost.
 
-Run ``python tools/kill_while_recording.py --kills 200``; it says what was found and ends with 1 if anything was lost.
+Run ``python tools/kill_while_recording.py --kills 200``; it says what it found and ends with 1 if
+anything was lost.
 """
 
 import argparse
@@ -45,7 +46,8 @@ def main() -> int:
             n_reported += len(reported)
             _check_use(folder)
     print(
-        f"{n_kills} kills in {n_sessions} recordings: {n_reported} episodes were reported as kept, none is lost"
+        f"{n_kills} kills in {n_sessions} recordings: {n_reported} episodes were reported as kept, "
+        "none is lost"
     )
     return 0
 

@@ -82,11 +82,13 @@ class GuidedHand:
 
     def close_or_open(self) -> None:
         """Close the gripper, or open it."""
-        self._wanted_opening = self._open if self.is_closed else 0.0
+        released = self._task.release_opening
+        let_go = self._open if released is None else released
+        self._wanted_opening = let_go if self.is_closed else 0.0
 
     def lift(self) -> None:
-        """Lift the tool to the height of the carry."""
-        self._height = self._task.carry_height
+        """Lift the tool: with a part to the height of the carry, without one to where it is clear of all."""
+        self._height = self._task.carry_height if self.is_closed else self._task.travel_height
 
     def lower(self) -> None:
         """Lower the tool to the part, or, with a part, to where it is let go."""
@@ -129,7 +131,7 @@ class GuidedHand:
         self._rotation = Rotation.from_matrix(tool.rotation)
         self._yaw = float(np.arctan2(tool.rotation[1, 0], tool.rotation[0, 0]))
         if self._height is None and self.guide:
-            self._height = self._task.carry_height
+            self._height = self._task.travel_height
 
     def _set_goal(self, state: ArmState) -> None:
         """Where the tool is to go: in the plane after the pointer, up and down by the buttons."""
@@ -166,10 +168,12 @@ class GuidedHand:
             )
 
     def _carries(self, state: ArmState) -> bool:
-        """Whether a part is in the gripper and in the plane of the carry, with the guide on."""
+        """Whether the tool is in the plane of the carry, with the guide on and a part, if it can hold one."""
         height = state.world_from_tool.position[2]
         in_plane = self.guide and abs(height - self._task.carry_height) < _IN_PLANE
-        return bool(in_plane and self.is_closed and state.opening > _EMPTY)
+        if self._task.tool == "gripper":
+            return bool(in_plane and self.is_closed and state.opening > _EMPTY)
+        return bool(in_plane and (self.is_closed or not self._task.grips))
 
 
 def _at_most(vector: Array, size: float) -> Array:

@@ -40,7 +40,7 @@ def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpiso
         view = perceive(world)
         recorder = Recorder()
         lead(world, arm, _scripted_hand(scene, world, arm, seed), recorder)
-        verdict = _judge(world, arm, view)
+        verdict = judge(world, arm, view)
         return recorder.episode(scene_name, robot_name, seed, verdict, view.picture, view.detections)
 
 
@@ -90,7 +90,7 @@ def _scripted_hand(scene: SceneDescription, world: World, arm: Arm, seed: int) -
     return ScriptedHand(script, scene.physics.time_step)
 
 
-def _judge(world: World, arm: Arm, view: View) -> Verdict:
+def judge(world: World, arm: Arm, view: View) -> Verdict:
     """Whether the demonstration can be learnt from: the task is done, and the camera saw the objects."""
     if view.missing:
         return Verdict(Outcome.OBJECT_NOT_SEEN, f"{view.missing[0].name}: {view.missing[0].reason}")

@@ -62,7 +62,7 @@ def replay_in(
 ) -> Replay:
     """The same in a world that is laid out already, as the episode found it."""
     arm.body.place(episode.joint_positions[0])
-    orders = gripper_orders(episode.gripper_openings, arm.description.gripper.maximum_opening)
+    orders = _orders(episode, arm, world.description.task.release_opening)
     order, distances = np.nan, []
     every = max(1, round(float(np.median(np.diff(episode.times))) / world.description.physics.time_step))
     for i in range(len(episode.times)):
@@ -99,6 +99,15 @@ def gripper_orders(openings: Array, maximum: float) -> Array:
             order, farthest = (0.0 if is_open else maximum), float(opening)
         orders[i] = order
     return orders
+
+
+def _orders(episode: RecordedEpisode, arm: Arm, release_opening: float | None) -> Array:
+    """The orders to this gripper, which lets go with an opening of its own where the task says so."""
+    orders = gripper_orders(episode.gripper_openings, arm.description.gripper.maximum_opening)
+    was_closed = np.maximum.accumulate(orders == 0.0)
+    return (
+        orders if release_opening is None else np.where(was_closed & (orders > 0.0), release_opening, orders)
+    )
 
 
 def _apply(arm: Arm, episode: RecordedEpisode, by: By, i: int, share: float) -> None:

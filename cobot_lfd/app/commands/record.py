@@ -9,6 +9,7 @@ from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
 from cobot_lfd.app.commands.options import require_positive
 from cobot_lfd.app.progress import progress
 from cobot_lfd.app.record import record_session
+from cobot_lfd.app.record_in_window import HELP, record_in_window
 
 
 def record(
@@ -39,8 +40,11 @@ def record(
     require_positive("demos", demos)
     if hand == "browser":
         return _in_browser(scene, robot, out, seed, port=port, host=host, show=open)
+    how = record_in_window if hand == "mouse" else record_session
+    if hand == "mouse":
+        print(HELP, flush=True)
     with progress("recording", demos) as report:
-        episodes = record_session(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
+        episodes = how(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
     kept = sum(episode.verdict.succeeded for episode in episodes)
     print(f"{kept} of {demos} demonstrations did the task; they are in {out}")
     return DONE if kept == demos else NOT_ALL_SUCCEEDED

@@ -36,6 +36,7 @@ class Grab:
 
     Attributes:
         tab: Who drags.
+        grabbed: The point that was taken hold of [m], shape (3,).
     """
 
     def __init__(self, tab: int, grabbed: ArrayLike, tool: Array) -> None:
@@ -47,8 +48,8 @@ class Grab:
             tool: Where the tool was [m], shape (3,).
         """
         self.tab = tab
-        self._grabbed = np.asarray(grabbed, dtype=np.float64)
-        self._offset = self._grabbed - tool
+        self.grabbed = np.asarray(grabbed, dtype=np.float64)
+        self._offset = self.grabbed - tool
 
     def goal(self, camera: ArrayLike, pointer: ArrayLike, *, guide: bool) -> Array:
         """Where the tool is wanted [m], shape (3,).
@@ -58,5 +59,5 @@ class Grab:
             pointer: The pointer on the plane through the grabbed point that faces the camera [m], shape (3,).
             guide: Whether the tool keeps its height, so that the pointer is taken to move in that plane.
         """
-        place = on_plane(camera, pointer, self._grabbed[2]) if guide else None
+        place = on_plane(camera, pointer, self.grabbed[2]) if guide else None
         return np.asarray(pointer if place is None else place, dtype=np.float64) - self._offset

@@ -37,7 +37,9 @@ def serve(label: str, port: int | None) -> LocalServer:
         raise CobotError(f"--port {port} is in use; choose another one, or leave it out for a free one.")
     with redirect_stdout(io.StringIO()):  # our own address is printed instead
         server = LocalServer(host=LOOPBACK, port=chosen, label=label, verbose=False)
-    server.gui.configure_theme(show_share_button=False, show_logo=False, control_width="medium")
+    server.gui.configure_theme(
+        show_share_button=False, show_logo=False, control_layout="fixed", control_width="medium"
+    )
     return server
 
 

@@ -110,7 +110,7 @@ class Stage:
         return check_success(self.world, (self.arm.body.id,), step=self._step)
 
     def align(self) -> None:
-        """Turn the tool as the part, or with a part its goal, asks for, where the camera saw what decides it."""
+        """Turn the tool as the part asks for, or, with a part, as its goal does."""
         if not self.view.missing:
             rotation = self.arm.state().world_from_tool.rotation
             yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
