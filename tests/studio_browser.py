@@ -101,7 +101,9 @@ class Person:
 
     def press(self, label: str) -> None:
         """Press a button, where it is on the page."""
-        box = self.page.get_by_text(label, exact=True).bounding_box(timeout=60_000)
+        button = self.page.get_by_text(label, exact=True)
+        self.wait_until(button.is_enabled, f"'{label}' can be pressed")
+        box = button.bounding_box(timeout=60_000)
         self.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
 
     def tool(self) -> Array:

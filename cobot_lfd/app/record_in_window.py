@@ -82,6 +82,8 @@ def _record(
             guided.turn_to(turn.end if guided.is_closed else turn.start)
 
         recorder, clock = Recorder(), Clock(scene.physics.time_step)
-        lead(world, arm, WindowHand(world.client, arm, guided, align), recorder, observer=clock.step)
+        hand = WindowHand(world.client, arm, guided, align)
+        print(f"seed {seed}: lead the arm", flush=True)
+        lead(world, arm, hand, recorder, observer=clock.step)
         verdict = judge(world, arm, view)
         return recorder.episode(scene_name, robot_name, seed, verdict, view.picture, view.detections)

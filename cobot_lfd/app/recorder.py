@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from cobot_lfd.app.episodes import RecordedEpisode
 from cobot_lfd.app.hand import HandAction
 from cobot_lfd.detection import Detection
+from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Verdict
 from robots import ArmState
 
@@ -35,7 +36,15 @@ class Recorder:
         picture: NDArray[np.uint8],
         detections: tuple[Detection, ...],
     ) -> RecordedEpisode:
-        """The samples as an episode that ended with a verdict."""
+        """The samples as an episode that ended with a verdict.
+
+        Raises:
+            DataError: If nothing was recorded.
+        """
+        if not self.samples:
+            raise DataError(
+                f"nothing was recorded of seed {seed}; lead the arm before you end the recording."
+            )
         times, states, actions = zip(*self.samples, strict=True)
         return RecordedEpisode(
             scene=scene,

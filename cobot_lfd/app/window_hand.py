@@ -57,6 +57,8 @@ class WindowHand:
         self._grab: Grab | None = None
         self._tick = 0
         self._done = False
+        client.getKeyboardEvents()  # what was pressed before is not meant for this demonstration
+        client.getMouseEvents()
         self._keys: dict[int, Callable[[], None]] = {
             ord("g"): hand.close_or_open,
             ord("s"): hand.lower,

@@ -91,11 +91,9 @@ class Page:
             self._draw_paths()
 
     def said(self, sentence: str, *, bad: bool = False) -> None:
-        """Tell all tabs."""
-        for client in self._server.get_clients().values():
-            client.add_notification(
-                "Recording studio", sentence, color="orange" if bad else "teal", auto_close_seconds=8.0
-            )
+        """Tell all tabs, in the panel, where it hides nothing."""
+        if self._panel is not None:
+            self._panel.show_said(sentence, bad=bad)
 
     def _pulled_to(self, stage: Stage) -> Array | None:
         pointer = stage.hand.pointer

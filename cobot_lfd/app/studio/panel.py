@@ -27,6 +27,7 @@ class Panel:
         gui = server.gui
         self._status = gui.add_markdown("")
         self._clock = gui.add_markdown("")
+        self._said = gui.add_markdown("")
         tabs = gui.add_tab_group()
         with tabs.add_tab("Show"):
             self._add_recording()
@@ -77,6 +78,10 @@ class Panel:
         self._learnt.content = session.model.explain() if session.model is not None else _UNLEARNT
         self._learn.disabled = busy or len(session.kept.good) < 2
         self._try.disabled = busy or recording or not learnt
+
+    def show_said(self, sentence: str, *, bad: bool) -> None:
+        """Show what the session says."""
+        self._said.content = f"{'⚠️' if bad else '💬'} {sentence}"
 
     def show_clock(self, factor: float, seconds: float, near: list[int]) -> None:
         """Show whether the physics keeps up, and joints near their limits."""
