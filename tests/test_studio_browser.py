@@ -77,6 +77,7 @@ def test_a_person_teaches_the_arm_in_a_browser(
         person.press("Learn [L]")
         person.wait_until(lambda: session.model is not None, "a model")
         person.wait_for_mode(Mode.READY)
+        person.pause(3.0)
         person.page.screenshot(path=tmp_path / "learnt.png")
         said = _listen(studio)
         person.press("Let the arm try [Y]")
@@ -128,7 +129,7 @@ def _discard_and_undo(person: Person) -> None:
 def _look_at_kept(person: Person, folder: Path) -> None:
     """The list, and a replay."""
     person.press("Kept")
-    person.page.get_by_text("✅").first.wait_for(timeout=30_000)
+    person.page.get_by_text("done").first.wait_for(timeout=30_000)
     person.page.screenshot(path=folder / "list.png")
     said = _listen(person.studio)
     person.press("Replay")

@@ -40,6 +40,7 @@ class Page:
         # Where the page is drawn in software, shadows and mirrored surroundings cost more than all else.
         server.scene.configure_default_lights(cast_shadow=False)
         server.scene.configure_environment_map(hdri=None)
+        server.scene.add_light_ambient("/light", intensity=1.5)
         server.initial_camera.position = (1.45, -0.55, 0.95)
         server.initial_camera.look_at = (0.45, 0.12, 0.12)
 

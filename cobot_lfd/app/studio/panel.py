@@ -62,7 +62,7 @@ class Panel:
     def show_session(self, session: Session) -> None:
         """Show mode, list and model."""
         mode = session.mode
-        self._status.content = f"### {'🔴 ' if mode is Mode.RECORDING else ''}{mode.value}"
+        self._status.content = f"### {'● ' if mode is Mode.RECORDING else ''}{mode.value}"
         recording, busy = mode is Mode.RECORDING, mode in _BUSY
         self._start.disabled, self._stop.disabled = recording or busy, not recording
         self._discard.disabled = session.last is None or busy
@@ -81,12 +81,12 @@ class Panel:
 
     def show_said(self, sentence: str, *, bad: bool) -> None:
         """Show what the session says."""
-        self._said.content = f"{'⚠️' if bad else '💬'} {sentence}"
+        self._said.content = f"**{sentence}**" if bad else sentence
 
     def show_clock(self, factor: float, seconds: float, near: list[int]) -> None:
         """Show whether the physics keeps up, and joints near their limits."""
-        pace = "in real time" if factor > 0.97 else f"⚠️ slower than real time: {factor:.2f}×"
-        joints = f" · ⚠️ joint {', '.join(map(str, near))} near its limit" if near else ""
+        pace = "in real time" if factor > 0.97 else f"**slower than real time: {factor:.2f}×**"
+        joints = f" · **joint {', '.join(map(str, near))} near its limit**" if near else ""
         self._clock.content = f"physics {pace} · t = {seconds:.2f} s{joints}"
 
     def _add_recording(self) -> None:
@@ -179,8 +179,8 @@ def _table(kept: Kept) -> str:
     for number, episode in kept.episodes.items():
         quality = kept.qualities[number]
         smooth = "-" if quality.smoothness is None else f"{quality.smoothness:.2f}"
-        mark = "✅" if episode.verdict.succeeded else "❌"
+        mark = "done" if episode.verdict.succeeded else "failed"
         failure = [] if episode.verdict.succeeded else [episode.verdict.sentence]
-        notes = f"{mark} {'; '.join([*failure, *quality.warnings])}"
+        notes = "; ".join([mark, *failure, *quality.warnings])
         lines.append(f"| {number} | {episode.seed} | {quality.duration:.1f} | {smooth} | {notes} |")
-    return "\n".join([*lines, *(f"\n⚠️ {sentence}" for sentence in kept.damaged)])
+    return "\n".join([*lines, *(f"\n**{sentence}**" for sentence in kept.damaged)])

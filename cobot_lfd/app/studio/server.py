@@ -37,9 +37,8 @@ def serve(label: str, port: int | None) -> LocalServer:
         raise CobotError(f"--port {port} is in use; choose another one, or leave it out for a free one.")
     with redirect_stdout(io.StringIO()):  # our own address is printed instead
         server = LocalServer(host=LOOPBACK, port=chosen, label=label, verbose=False)
-    server.gui.configure_theme(
-        show_share_button=False, show_logo=False, control_layout="fixed", control_width="medium"
-    )
+    server.gui.configure_theme(show_share_button=False, show_logo=False, control_width="medium")
+    server.gui.main_panel.dock_right()  # beside the picture, not over it
     return server
 
 
