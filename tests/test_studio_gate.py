@@ -86,7 +86,9 @@ def test_the_page_listens_on_the_loopback_address_only() -> None:
         port = server.get_port()
         connection = http.client.HTTPConnection(LOOPBACK, port, timeout=10)
         connection.request("GET", "/")
-        assert connection.getresponse().status == 200
+        answer = connection.getresponse()
+        assert answer.status == 200
+        assert b"<html" in answer.read()[:500].lower()
         connection.close()
         with pytest.raises(OSError, match="refused"):
             socket.create_connection(("127.0.0.2", port), timeout=5)

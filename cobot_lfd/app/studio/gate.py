@@ -44,6 +44,7 @@ class Gate:
         try:
             self._server = self._loop.run_until_complete(asyncio.start_server(self._admit, host, port or 0))
         except OSError as error:
+            self._loop.close()
             raise CobotError(f"cannot listen on {host}, port {port or 'any'}: {error.strerror}.") from error
         bound = self._server.sockets[0].getsockname()[1]
         self.address = f"http://{host}:{bound}/?token={self._token}"

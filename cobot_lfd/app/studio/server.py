@@ -21,6 +21,13 @@ class LocalServer(viser.ViserServer):
         del verbose
         return None
 
+    def stop(self) -> None:
+        """Stop serving, and close what viser leaves open."""
+        super().stop()
+        loop = self.get_event_loop()
+        if not loop.is_running():
+            loop.close()
+
 
 def serve(label: str, port: int | None) -> LocalServer:
     """Serve a page on the loopback address.
