@@ -11,6 +11,7 @@ from cobot_lfd.pose import Pose
 from robots.body import RobotBody
 from robots.description import RobotDescription
 from robots.grip import make_grip
+from robots.impedance import posture_torques, tool_wrench
 
 _POSITION_GAIN = 0.5  # share of a joint's error that its motor removes in one step
 _VELOCITY_GAIN = 1.0
@@ -85,17 +86,7 @@ class Arm:
         positions, velocities = self.body.joint_states()
         damping = np.array(self.description.teaching.damping)
         self._torques = self.body.gravity_torques(positions) - damping * velocities
-        n = len(self.body.joints)
-        self._client.setJointMotorControlArray(
-            self.body.id,
-            self.body.joints,
-            pybullet.VELOCITY_CONTROL,
-            targetVelocities=[0.0] * n,
-            forces=[0.0] * n,
-        )
-        self._client.setJointMotorControlArray(
-            self.body.id, self.body.joints, pybullet.TORQUE_CONTROL, forces=self._torques.tolist()
-        )
+        self._drive()
         point = self.body.tool_pose().position.tolist()
         world = pybullet.WORLD_FRAME
         self._client.applyExternalForce(self.body.id, self.body.tool, list(map(float, force)), point, world)
@@ -117,6 +108,37 @@ class Arm:
         )
         self._grip.update()
         self._led = False
+
+    def comply(self, positions: Array, velocities: Array, accelerations: Array, stiffness: Array) -> None:
+        """Follow joint positions for one step as if pulled there by springs at the tool.
+
+        Args:
+            positions: Wanted joint positions [rad], shape (n,).
+            velocities: Wanted joint velocities [rad/s], shape (n,).
+            accelerations: Wanted joint accelerations [rad/s²], shape (n,).
+            stiffness: Of the tool in x and y of the world [N/m], shape (2, 2).
+        """
+        actual, rates = self.body.joint_states()
+        jacobian = self.body.jacobian(actual)
+        error, error_rate = positions - actual, velocities - rates
+        wrench = tool_wrench(stiffness, jacobian @ error, jacobian @ error_rate)
+        carried = self.body.dynamics_torques(actual, rates, accelerations)
+        held = posture_torques(jacobian, error, error_rate)
+        most = np.array(self.description.limits.torque)
+        self._torques = np.clip(carried + jacobian.T @ wrench + held, -most, most)
+        self._drive()
+        self._grip.update()
+        self._led = True
+
+    def _drive(self) -> None:
+        """Let the joints' motors exert the torques, and nothing else, in the next step."""
+        body, joints, zeros = self.body.id, self.body.joints, [0.0] * len(self.body.joints)
+        self._client.setJointMotorControlArray(
+            body, joints, pybullet.VELOCITY_CONTROL, targetVelocities=zeros, forces=zeros
+        )
+        self._client.setJointMotorControlArray(
+            body, joints, pybullet.TORQUE_CONTROL, forces=self._torques.tolist()
+        )
 
     def hold(self) -> None:
         """Stay where the arm is now, until something else is asked of it."""

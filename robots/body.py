@@ -102,6 +102,15 @@ class RobotBody:
         torques = self.client.calculateInverseDynamics(self.id, self._all_positions(positions), zeros, zeros)
         return np.array(torques)[self._columns]
 
+    def dynamics_torques(self, positions: Array, velocities: Array, accelerations: Array) -> Array:
+        """Joint torques [N m], shape (n,), under which the arm has these accelerations [rad/s²], (n,)."""
+        rates, gains = np.zeros(len(self._movable)), np.zeros(len(self._movable))
+        rates[self._columns], gains[self._columns] = velocities, accelerations
+        torques = self.client.calculateInverseDynamics(
+            self.id, self._all_positions(positions), rates.tolist(), gains.tolist()
+        )
+        return np.array(torques)[self._columns]
+
     def _all_positions(self, positions: Array) -> list[float]:
         """Positions of all movable joints: the arm's as given, the fingers' as they are."""
         everything = [state[0] for state in self.client.getJointStates(self.id, self._movable)]

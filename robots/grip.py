@@ -12,7 +12,8 @@ from robots.gripper import GripperDescription, NoGripper, ParallelGripper, Sucti
 _EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
 _LOST = 0.005  # [m]; a part that has come this far off the cup has lost it
 _TOUCHING = 0.002  # [m]; a cup's lip gives way by so much
-_BEHIND = 0.005  # [m]; from so far inside the cup a face at its lip is looked for
+_BEHIND = 0.005  # [m]; a face at the axis is looked for from so far inside the cup ...
+_BEYOND = 0.005  # ... to so far beyond its lip, which bends to a ball that it meets beside its top
 
 
 class Grip(Protocol):
@@ -138,7 +139,7 @@ class Suction:
     def _face_at_axis(self) -> int | None:
         """The body that has a face across the cup's axis, at its lip; None where there is none."""
         lip, axis = self._lip()
-        hit = self._client.rayTest((lip - _BEHIND * axis).tolist(), (lip + _TOUCHING * axis).tolist())[0]
+        hit = self._client.rayTest((lip - _BEHIND * axis).tolist(), (lip + _BEYOND * axis).tolist())[0]
         aligned = -(np.array(hit[4]) @ axis) > np.cos(np.deg2rad(self._gripper.alignment_deg))
         return int(hit[0]) if hit[0] >= 0 and aligned else None
 

@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
+from cobot_lfd.app.compliance import Compliance, StiffnessField
 from cobot_lfd.app.execute import Observer, execute
 from cobot_lfd.app.geometry import farthest_from
 from cobot_lfd.app.perceive import View, perceive
@@ -49,6 +50,7 @@ class Bench:
         model: What was learnt.
         covered: Whether something covers the camera's lens.
         misjudge: What becomes of a view before anything is done with it, given the seed; None: nothing.
+        compliance: How the arm gives way during the carry; None: not at all.
     """
 
     scene_name: str
@@ -59,6 +61,7 @@ class Bench:
     model: PathModel
     covered: bool = False
     misjudge: Callable[[View, int], View] | None = None
+    compliance: Compliance | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,13 +156,21 @@ def _attempt(
         detail = f"the motion would take {notes.duration:.0f} s; {_TIME_LIMIT:.0f} s are allowed"
         raise _EpisodeFailedError(Verdict(Outcome.TIMEOUT, detail))
     with notes.timed("execute"):
-        return _carry_out(world, arm, stages, path, notes, observer)
+        return _carry_out(world, arm, stages, path, notes, observer, bench.compliance)
 
 
 def _carry_out(
-    world: World, arm: Arm, stages: tuple[Stage, ...], path: Array, notes: _Notes, observer: Observer | None
+    world: World,
+    arm: Arm,
+    stages: tuple[Stage, ...],
+    path: Array,
+    notes: _Notes,
+    observer: Observer | None,
+    compliance: Compliance | None,
 ) -> Verdict:
-    execution = execute(world, arm, stages, observer=observer)
+    generated = notes.path
+    soft = StiffnessField(compliance, generated) if compliance and generated else None
+    execution = execute(world, arm, stages, observer=observer, stiffness=soft)
     if len(execution.carried):
         notes.metrics["tracking_error"] = farthest_from(path, execution.carried)
     return execution.failure or check_success(world, (arm.body.id,))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cobot_lfd.app.compliance import StiffnessField
 from cobot_lfd.app.plan import Stage
 from cobot_lfd.arrays import Array
 from cobot_lfd.outcome import Outcome, Verdict
@@ -32,7 +33,12 @@ class Execution:
 
 
 def execute(
-    world: World, arm: Arm, stages: Sequence[Stage], *, observer: Observer | None = None
+    world: World,
+    arm: Arm,
+    stages: Sequence[Stage],
+    *,
+    observer: Observer | None = None,
+    stiffness: StiffnessField | None = None,
 ) -> Execution:
     """Carry out a motion; broken off where the gripper loses the part or the arm does not follow.
 
@@ -41,19 +47,24 @@ def execute(
         arm: The arm, at the start of the first stage.
         stages: What to do.
         observer: Called after every step of the simulation.
+        stiffness: How stiff the tool is during the carry, by place; by default as stiff as the arm can be.
     """
     carried: list[Array] = []
     held = False
     for stage in stages:
         arm.grip(stage.opening)
         trace = carried if stage.name == "carry" else None
-        if not _follow(world, arm, stage, must_hold=held and stage.holding, trace=trace, observer=observer):
+        soft = stiffness if stage.name == "carry" else None
+        must_hold = held and stage.holding
+        if not _follow(world, arm, stage, must_hold=must_hold, trace=trace, observer=observer, soft=soft):
             return Execution(Verdict(Outcome.GRASP_LOST, f"during '{stage.name}'"), _stack(carried))
         if stage.holding and not arm.holds_something():
             return Execution(Verdict(Outcome.GRASP_FAILED, "the fingers closed on nothing"), _stack(carried))
         held = stage.holding
         miss = float(np.abs(arm.state().positions - stage.trajectory.goal).max())
-        if miss > _FOLLOWED:
+        if (
+            miss > _FOLLOWED and soft is None
+        ):  # a soft arm may have been pushed; the next stage brings it back
             detail = f"a joint is {miss:.3f} rad from the end of '{stage.name}'"
             return Execution(Verdict(Outcome.TRACKING_LOST, detail), _stack(carried))
     return Execution(None, _stack(carried))
@@ -67,11 +78,15 @@ def _follow(
     must_hold: bool,
     trace: list[Array] | None,
     observer: Observer | None,
+    soft: StiffnessField | None,
 ) -> bool:
     """Follow one stage; False as soon as the gripper is empty though it must hold something."""
     samples = stage.trajectory.every(world.description.physics.time_step)
     for i, (position, velocity) in enumerate(zip(samples.positions, samples.velocities, strict=True)):
-        arm.follow(position, velocity)
+        if soft is None:
+            arm.follow(position, velocity)
+        else:
+            arm.comply(position, velocity, samples.accelerations[i], soft(arm.tool_position()[:2]))
         world.step()
         if trace is not None:
             trace.append(arm.tool_position()[:2])
