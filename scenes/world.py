@@ -32,20 +32,17 @@ class World:
         watch: What has been noticed since the world was built. Only for the success check.
     """
 
-    def __init__(
-        self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny", window: bool = False
-    ) -> None:
+    def __init__(self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny") -> None:
         """Build the world.
 
         Args:
             description: The scene.
             seed: Decides where the objects stand.
             renderer: What draws the pictures: "tiny" needs nothing, "egl" is faster and draws other colours.
-            window: Whether the simulator opens its window; there can be one at a time.
         """
         self.description = description
         with quiet_output():
-            self.client = BulletClient(pybullet.GUI if window else pybullet.DIRECT)
+            self.client = BulletClient(pybullet.DIRECT)
             self._plugin = load_renderer(self.client, renderer)
         self._renderer: Renderer = renderer
         self._n_steps = 0

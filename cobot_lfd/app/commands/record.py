@@ -9,7 +9,6 @@ from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
 from cobot_lfd.app.commands.options import require_positive
 from cobot_lfd.app.progress import progress
 from cobot_lfd.app.record import record_session
-from cobot_lfd.app.record_in_window import HELP, record_in_window
 
 
 def record(
@@ -17,7 +16,7 @@ def record(
     *,
     out: Path,
     robot: str = "panda",
-    hand: Literal["scripted", "browser", "mouse"] = "scripted",
+    hand: Literal["scripted", "browser"] = "scripted",
     demos: int = 6,
     seed: int = 0,
     port: int | None = None,
@@ -30,7 +29,7 @@ def record(
         scene: Name of the scene; see 'cobot-lfd scenes'.
         out: Folder for the demonstrations. What is in it already stays; seeds that it has are left out.
         robot: Name of the robot; see 'cobot-lfd robots'.
-        hand: Who leads: a script, a person in a browser, or one with the mouse in the simulator's window.
+        hand: Who leads: a script, or a person in a browser.
         demos: How many demonstrations; in the browser one records until one ends it.
         seed: Of the first demonstration; each further one has the next.
         port: Of the page in the browser; a free one by default.
@@ -40,11 +39,8 @@ def record(
     require_positive("demos", demos)
     if hand == "browser":
         return _in_browser(scene, robot, out, seed, port=port, host=host, show=open)
-    how = record_in_window if hand == "mouse" else record_session
-    if hand == "mouse":
-        print(HELP, flush=True)
     with progress("recording", demos) as report:
-        episodes = how(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
+        episodes = record_session(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
     kept = sum(episode.verdict.succeeded for episode in episodes)
     print(f"{kept} of {demos} demonstrations did the task; they are in {out}")
     return DONE if kept == demos else NOT_ALL_SUCCEEDED
