@@ -80,6 +80,7 @@ class Person:
     def __init__(self, browser: object, studio: Studio) -> None:
         self.studio = studio
         self.session = studio.session
+        # The browser's library is imported only where there is a browser, so its type is not named here.
         self.page = browser.new_page(viewport={"width": 900, "height": 480})  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)

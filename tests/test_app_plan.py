@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from cobot_lfd.app.plan import Surroundings, plan_motion
+from cobot_lfd.app.plan import Stage, Surroundings, plan_motion
 from cobot_lfd.frame import Frame
 from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
@@ -31,9 +31,9 @@ def around(*more: Obstacle, hand: Frame = HAND) -> Surroundings:
     return Surroundings((*obstacles(SCENE, {"hand": hand}), *more), object_obstacle(SCENE, "board", BOARD))
 
 
-def heights(kinematics: Kinematics, stages: tuple[object, ...]) -> list[float]:
-    carry = next(stage for stage in stages if getattr(stage, "name", "") == "carry")
-    joints = carry.trajectory.positions(np.linspace(0.0, carry.trajectory.duration, 9))  # type: ignore[attr-defined]  # a stage
+def heights(kinematics: Kinematics, stages: tuple[Stage, ...]) -> list[float]:
+    carry = next(stage for stage in stages if stage.name == "carry")
+    joints = carry.trajectory.positions(np.linspace(0.0, carry.trajectory.duration, 9))
     return [float(kinematics.forward(q).position[2]) for q in joints]
 
 

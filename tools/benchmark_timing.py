@@ -10,11 +10,11 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-import toppra  # type: ignore[import-untyped]  # It has no type hints.
+import toppra
 import tyro
 from scipy.interpolate import make_interp_spline
 from toppra import algorithm, constraint
-from toppra.interpolator import AbstractGeometricPath  # type: ignore[import-untyped]  # As above.
+from toppra.interpolator import AbstractGeometricPath
 
 from cobot_lfd.app.plan import plan_motion
 from cobot_lfd.app.turns import turn_choices
@@ -46,7 +46,7 @@ class Measurement:
     seconds: float
 
 
-class ToppraPath(AbstractGeometricPath):  # type: ignore[misc]  # As above.
+class ToppraPath(AbstractGeometricPath):  # type: ignore[misc]  # toppra has no type hints.
     """A joint path as TOPP-RA wants it."""
 
     def __init__(self, path: JointPath) -> None:
