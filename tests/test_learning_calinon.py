@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from cobot_lfd import TaskParameterisedGMM
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import DataError
-from cobot_lfd.learning.calinon import read_calinon
+from cobot_lfd.learning.experiments.calinon import read_calinon
 
 T = 30
 

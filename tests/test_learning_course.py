@@ -9,16 +9,16 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.course import fit_course
+from cobot_lfd.learning.course.course import fit_course
+from cobot_lfd.learning.course.features import FeatureSet, scene_features
+from cobot_lfd.learning.course.phase import by_phase, follow, way_despite_trembling, way_travelled
+from cobot_lfd.learning.course.scene_regression import fit_scene_regression
+from cobot_lfd.learning.course.smoothing import read, readout
+from cobot_lfd.learning.course.splines import even_basis, roughness_penalty
 from cobot_lfd.learning.data import Scenes, TaskData, collect
-from cobot_lfd.learning.features import FeatureSet, scene_features
-from cobot_lfd.learning.phase import by_phase, follow, way_despite_trembling, way_travelled
-from cobot_lfd.learning.scene_regression import fit_scene_regression
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, human_timing, planar
 from cobot_lfd.learning.selection import select_frames
 from cobot_lfd.learning.settings import IMPROVED
-from cobot_lfd.learning.smoothing import read, readout
-from cobot_lfd.learning.splines import even_basis, roughness_penalty
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, human_timing, planar
 
 
 def random_scenes(n: int, seed: int, n_frames: int = 2) -> Scenes:

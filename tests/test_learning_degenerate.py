@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from cobot_lfd import Demonstration, Frame, TaskParameterisedGMM
 from cobot_lfd.errors import DataError
-from cobot_lfd.learning.synthetic import TASKS, SyntheticTask, demonstrations
+from cobot_lfd.learning.experiments.synthetic import TASKS, SyntheticTask, demonstrations
 
 LINE = np.linspace([0.0, 0.0], [1.0, 0.2], 60)
 FRAMES = {"a": Frame(np.zeros(2), 0.0), "b": Frame(np.array([1.0, 0.2]), 1.0)}

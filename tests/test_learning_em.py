@@ -12,9 +12,9 @@ from sklearn.mixture import GaussianMixture
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import collect
-from cobot_lfd.learning.em import EMFit, EMSettings, expect, fit_mixture, quadratic_features
-from cobot_lfd.learning.mixture import Mixture
-from cobot_lfd.learning.synthetic import TASKS, demonstrations
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations
+from cobot_lfd.learning.mixtures.em import EMFit, EMSettings, expect, fit_mixture, quadratic_features
+from cobot_lfd.learning.mixtures.mixture import Mixture
 
 
 def example(seed: int = 0) -> tuple[Array, Array]:

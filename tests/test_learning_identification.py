@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from cobot_lfd import Demonstration, Frame, FrameKind, TaskParameterisedGMM
-from cobot_lfd.learning.bearing import BearingTest, bearing_evidence
-from cobot_lfd.learning.criteria import Criteria, fulfilled
 from cobot_lfd.learning.data import TaskData, collect
-from cobot_lfd.learning.identification import Certainty, identify_by_bearing
-from cobot_lfd.learning.mixture import Mixture
-from cobot_lfd.learning.synthetic import TASKS, SyntheticTask, demonstrations
+from cobot_lfd.learning.experiments.synthetic import TASKS, SyntheticTask, demonstrations
+from cobot_lfd.learning.kinds.bearing import BearingTest, bearing_evidence
+from cobot_lfd.learning.kinds.criteria import Criteria, fulfilled
+from cobot_lfd.learning.kinds.identification import Certainty, identify_by_bearing
+from cobot_lfd.learning.mixtures.mixture import Mixture
 
 
 def data_of(task: SyntheticTask, seed: int, n: int = 6) -> TaskData:

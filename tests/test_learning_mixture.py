@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from cobot_lfd.learning.mixture import Mixture, regress
+from cobot_lfd.learning.mixtures.mixture import Mixture, regress
 
 
 def test_one_component_regresses_as_least_squares_does() -> None:

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from cobot_lfd import Demonstration, Frame, FrameKind, TaskParameterisedGMM
 from cobot_lfd.errors import DataError, ModelError
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, planar
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, planar
 
 METHODS = ("improved", "paper", "conventional")
 

@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 
 from cobot_lfd import FrameKind, TaskParameterisedGMM
 from cobot_lfd.learning.data import TaskDemonstration
-from cobot_lfd.learning.frame_product import FrameProduct
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, planar, true_path
 from cobot_lfd.learning.metrics import log_dimensionless_jerk
+from cobot_lfd.learning.mixtures.sharing import SharedQuantity, Sharing
+from cobot_lfd.learning.product.frame_product import FrameProduct
 from cobot_lfd.learning.settings import (
     CONVENTIONAL,
     IMPROVED,
@@ -23,8 +25,6 @@ from cobot_lfd.learning.settings import (
     RingDirection,
     settings_for,
 )
-from cobot_lfd.learning.sharing import SharedQuantity, Sharing
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, planar, true_path
 
 KINDS = {"start": FrameKind.ORIENTED, "end": FrameKind.ORIENTATION_LESS}
 OPTIONS = {

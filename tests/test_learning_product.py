@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 from scipy.stats import special_ortho_group
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning import symmetric
 from cobot_lfd.learning.data import Scenes
-from cobot_lfd.learning.product import Information, oriented_information, ring_information
-from cobot_lfd.learning.profile import Profile
-from cobot_lfd.learning.tracking import track
+from cobot_lfd.learning.mixtures.profile import Profile
+from cobot_lfd.learning.product import symmetric
+from cobot_lfd.learning.product.information import Information, oriented_information, ring_information
+from cobot_lfd.learning.product.tracking import track
 
 T = 8
 

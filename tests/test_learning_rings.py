@@ -6,10 +6,10 @@ from numpy.testing import assert_allclose
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import Scenes, TaskData
-from cobot_lfd.learning.directions import nearest_directions, sequence_directions, unit_carried_on
-from cobot_lfd.learning.em import EMSettings
-from cobot_lfd.learning.encoding import MixtureEncoding, fit_rings, tabulate
-from cobot_lfd.learning.mixture import Mixture
+from cobot_lfd.learning.mixtures.em import EMSettings
+from cobot_lfd.learning.mixtures.encoding import MixtureEncoding, fit_rings, tabulate
+from cobot_lfd.learning.mixtures.mixture import Mixture
+from cobot_lfd.learning.product.directions import nearest_directions, sequence_directions, unit_carried_on
 
 
 def spiral_data(noise: float) -> TaskData:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.sharing import SharedQuantity, Sharing, share, smooth_over_time
+from cobot_lfd.learning.mixtures.sharing import SharedQuantity, Sharing, share, smooth_over_time
 
 
 def log_joint(seed: int) -> Array:

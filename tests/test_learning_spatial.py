@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from cobot_lfd import Pose, SpatialDemonstration, TaskParameterisedGMM
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, true_path
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, true_path
 
 MOTION = Pose(np.array([0.3, -0.2, 1.0]), Rotation.from_euler("z", 1.1).as_matrix())
 

@@ -10,7 +10,7 @@ import pytest
 
 from cobot_lfd import TaskParameterisedGMM
 from cobot_lfd.errors import ModelError
-from cobot_lfd.learning.synthetic import TASKS, demonstrations
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations
 
 
 @pytest.fixture(scope="module")

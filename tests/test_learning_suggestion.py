@@ -7,8 +7,8 @@ import pytest
 
 from cobot_lfd import TaskParameterisedGMM
 from cobot_lfd.learning.data import TaskFrame
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrate, draw_scene, planar, true_path
 from cobot_lfd.learning.suggestion import suggest_demonstration
-from cobot_lfd.learning.synthetic import TASKS, demonstrate, draw_scene, planar, true_path
 
 
 def test_no_candidates_are_refused() -> None:

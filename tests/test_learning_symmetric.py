@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.stats import special_ortho_group
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning import symmetric
+from cobot_lfd.learning.product import symmetric
 
 
 def matrices(d: int) -> Array:

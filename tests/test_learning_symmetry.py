@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from cobot_lfd import Demonstration, Frame, TaskParameterisedGMM
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, planar
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, planar
 
 seeds = st.integers(0, 10_000)
 methods = st.sampled_from(["improved", "paper", "conventional"])

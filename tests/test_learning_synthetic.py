@@ -7,8 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cobot_lfd import Demonstration, SpatialDemonstration
-from cobot_lfd.learning.metrics import path_length, shortest_distance
-from cobot_lfd.learning.synthetic import (
+from cobot_lfd.learning.experiments.synthetic import (
     TASKS,
     SyntheticTask,
     demonstrate,
@@ -18,6 +17,7 @@ from cobot_lfd.learning.synthetic import (
     paper_like,
     true_path,
 )
+from cobot_lfd.learning.metrics import path_length, shortest_distance
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

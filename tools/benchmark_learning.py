@@ -19,9 +19,9 @@ from sklearn.mixture import GaussianMixture
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import TaskData, collect
-from cobot_lfd.learning.em import EMSettings, fit_mixture
+from cobot_lfd.learning.experiments.synthetic import TASKS, SyntheticTask, demonstrations, draw_scene, planar
+from cobot_lfd.learning.mixtures.em import EMSettings, fit_mixture
 from cobot_lfd.learning.model import TaskParameterisedGMM
-from cobot_lfd.learning.synthetic import TASKS, SyntheticTask, demonstrations, draw_scene, planar
 
 TOL = 1e-4
 REG_COVAR = 1e-6

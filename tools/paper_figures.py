@@ -19,12 +19,12 @@ from matplotlib.patches import Circle, Ellipse
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame
 from cobot_lfd.learning.data import Scenes, collect, stack_scenes
-from cobot_lfd.learning.directions import nearest_directions
-from cobot_lfd.learning.encoding import MixtureEncoding
-from cobot_lfd.learning.frame_product import FrameProduct
+from cobot_lfd.learning.experiments.synthetic import TASKS, demonstrations, draw_scene, planar, true_path
+from cobot_lfd.learning.mixtures.encoding import MixtureEncoding
 from cobot_lfd.learning.model import TaskParameterisedGMM
-from cobot_lfd.learning.product import oriented_means
-from cobot_lfd.learning.synthetic import TASKS, demonstrations, draw_scene, planar, true_path
+from cobot_lfd.learning.product.directions import nearest_directions
+from cobot_lfd.learning.product.frame_product import FrameProduct
+from cobot_lfd.learning.product.information import oriented_means
 
 COLOURS = {"start": "tab:pink", "end": "tab:green"}
 METHODS = {"conventional": "conventional", "paper": "paper's method", "improved": "this product"}

@@ -17,13 +17,8 @@ import numpy as np
 
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning.data import TaskDemonstration, collect
-from cobot_lfd.learning.experiments import Case, Fit, Scores, medians, paper_cases, run
-from cobot_lfd.learning.fitting import identify
-from cobot_lfd.learning.metrics import identifier_f1
-from cobot_lfd.learning.model import TaskParameterisedGMM
-from cobot_lfd.learning.settings import CONVENTIONAL, IMPROVED, PAPER, LearningSettings
-from cobot_lfd.learning.suggestion import suggest_demonstration
-from cobot_lfd.learning.synthetic import (
+from cobot_lfd.learning.experiments.cases import Case, Fit, Scores, medians, paper_cases, run
+from cobot_lfd.learning.experiments.synthetic import (
     TASKS,
     SyntheticTask,
     demonstrate,
@@ -34,6 +29,11 @@ from cobot_lfd.learning.synthetic import (
     planar,
     true_path,
 )
+from cobot_lfd.learning.fitting import identify
+from cobot_lfd.learning.metrics import identifier_f1
+from cobot_lfd.learning.model import TaskParameterisedGMM
+from cobot_lfd.learning.settings import CONVENTIONAL, IMPROVED, PAPER, LearningSettings
+from cobot_lfd.learning.suggestion import suggest_demonstration
 
 SLOTS = (0.0, 0.10, 0.15, 0.20, 0.25)
 PAPER_TABLE_1 = {

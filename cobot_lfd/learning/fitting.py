@@ -7,15 +7,15 @@ import numpy as np
 
 from cobot_lfd.errors import DataError
 from cobot_lfd.frame import FrameKind
-from cobot_lfd.learning.approach import learn_approach
-from cobot_lfd.learning.course import Course, fit_course
-from cobot_lfd.learning.criteria import fulfilled
+from cobot_lfd.learning.course.course import Course, fit_course
 from cobot_lfd.learning.data import TaskData, TaskDemonstration, collect
-from cobot_lfd.learning.em import EMFit, fit_mixture
-from cobot_lfd.learning.encoding import Encoding, MixtureEncoding, fit_rings, tabulate
-from cobot_lfd.learning.frame_product import FrameProduct
-from cobot_lfd.learning.generate import find_visits, ring_directions
-from cobot_lfd.learning.identification import Certainty, Finding, identify_by_bearing
+from cobot_lfd.learning.kinds.criteria import fulfilled
+from cobot_lfd.learning.kinds.identification import Certainty, Finding, identify_by_bearing
+from cobot_lfd.learning.mixtures.em import EMFit, fit_mixture
+from cobot_lfd.learning.mixtures.encoding import Encoding, MixtureEncoding, fit_rings, tabulate
+from cobot_lfd.learning.product.approach import learn_approach
+from cobot_lfd.learning.product.frame_product import FrameProduct
+from cobot_lfd.learning.product.gather import find_visits, ring_directions
 from cobot_lfd.learning.selection import select_frames
 from cobot_lfd.learning.settings import (
     Encode,

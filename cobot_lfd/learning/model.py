@@ -12,20 +12,20 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.errors import ModelError
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning import storage
-from cobot_lfd.learning.approach import ApproachAngles
-from cobot_lfd.learning.course import Course
+from cobot_lfd.learning.course.course import Course
+from cobot_lfd.learning.course.features import FeatureSet
+from cobot_lfd.learning.course.phase import Progress
+from cobot_lfd.learning.course.scene_regression import SceneRegression
 from cobot_lfd.learning.data import Scenes, TaskDemonstration, TaskFrame, stack_scenes
-from cobot_lfd.learning.encoding import MixtureEncoding, TableEncoding
-from cobot_lfd.learning.features import FeatureSet
 from cobot_lfd.learning.fitting import learn
-from cobot_lfd.learning.frame_product import FrameProduct
-from cobot_lfd.learning.generate import Visits
-from cobot_lfd.learning.identification import Certainty, Finding
-from cobot_lfd.learning.mixture import Mixture
+from cobot_lfd.learning.kinds.identification import Certainty, Finding
+from cobot_lfd.learning.mixtures.encoding import MixtureEncoding, TableEncoding
+from cobot_lfd.learning.mixtures.mixture import Mixture
+from cobot_lfd.learning.mixtures.profile import Profile
 from cobot_lfd.learning.path import GeneratedPath
-from cobot_lfd.learning.phase import Progress
-from cobot_lfd.learning.profile import Profile
-from cobot_lfd.learning.scene_regression import SceneRegression
+from cobot_lfd.learning.product.approach import ApproachAngles
+from cobot_lfd.learning.product.frame_product import FrameProduct
+from cobot_lfd.learning.product.gather import Visits
 from cobot_lfd.learning.settings import LearningSettings, settings_for
 
 STORED: tuple[type, ...] = (

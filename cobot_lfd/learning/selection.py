@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.course import VISITED, held_out_errors, task_size
+from cobot_lfd.learning.course.course import VISITED, held_out_errors, task_size
 from cobot_lfd.learning.data import TaskData
 
 EXHAUSTIVE = 4

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from cobot_lfd.frame import FrameKind
-from cobot_lfd.learning.bearing import BearingTest
-from cobot_lfd.learning.course import CourseSettings
-from cobot_lfd.learning.criteria import Criteria
-from cobot_lfd.learning.em import EMSettings
-from cobot_lfd.learning.sharing import Sharing
+from cobot_lfd.learning.course.course import CourseSettings as CourseSettings
+from cobot_lfd.learning.kinds.bearing import BearingTest as BearingTest
+from cobot_lfd.learning.kinds.criteria import Criteria as Criteria
+from cobot_lfd.learning.mixtures.em import EMSettings as EMSettings
+from cobot_lfd.learning.mixtures.sharing import SharedQuantity as SharedQuantity
+from cobot_lfd.learning.mixtures.sharing import Sharing as Sharing
 
 
 class Encode(Enum):

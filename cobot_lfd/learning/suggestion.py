@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.course import Course
+from cobot_lfd.learning.course.course import Course
 from cobot_lfd.learning.data import Scenes, TaskFrame, stack_scenes
-from cobot_lfd.learning.identification import Certainty
+from cobot_lfd.learning.kinds.identification import Certainty
 from cobot_lfd.learning.model import TaskParameterisedGMM
 
 DOUBT_WEIGHT = 1.0

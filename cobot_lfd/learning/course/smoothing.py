@@ -3,7 +3,7 @@
 import numpy as np
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.splines import even_basis, roughness_penalty
+from cobot_lfd.learning.course.splines import even_basis, roughness_penalty
 
 N_FUNCTIONS = 60
 """Spline functions of a generated path."""

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning import symmetric
 from cobot_lfd.learning.data import Scenes
-from cobot_lfd.learning.profile import Profile
+from cobot_lfd.learning.mixtures.profile import Profile
+from cobot_lfd.learning.product import symmetric
 
 
 @dataclass(frozen=True, slots=True, eq=False)

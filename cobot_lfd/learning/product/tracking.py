@@ -4,8 +4,8 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning import symmetric
-from cobot_lfd.learning.product import Information
+from cobot_lfd.learning.product import symmetric
+from cobot_lfd.learning.product.information import Information
 
 
 def track(information: Information, weight: float) -> Array:

@@ -7,17 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.data import Scenes, TaskData
-from cobot_lfd.learning.features import FeatureSet
-from cobot_lfd.learning.phase import Phases, Progress, by_phase, common_progress, follow
-from cobot_lfd.learning.scene_regression import (
+from cobot_lfd.learning.course.features import FeatureSet
+from cobot_lfd.learning.course.phase import Phases, Progress, by_phase, common_progress, follow
+from cobot_lfd.learning.course.scene_regression import (
     MINIMUM_JERK,
     STRAIGHT_PARTS,
     Roughness,
     SceneRegression,
     fit_scene_regression,
 )
-from cobot_lfd.learning.smoothing import read, readout
+from cobot_lfd.learning.course.smoothing import read, readout
+from cobot_lfd.learning.data import Scenes, TaskData
 
 N_PHASES = 200
 """Steps along the way."""

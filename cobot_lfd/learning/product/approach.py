@@ -12,7 +12,7 @@ import numpy as np
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import Scenes
-from cobot_lfd.learning.kernel import kernel_weights
+from cobot_lfd.learning.mixtures.kernel import kernel_weights
 
 RIDGE = 0.3
 """Sum of squared sines that is worth no turn."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning import symmetric
-from cobot_lfd.learning.approach import ApproachAngles
 from cobot_lfd.learning.data import Scenes
-from cobot_lfd.learning.encoding import Encoding
-from cobot_lfd.learning.generate import Visits, gather
-from cobot_lfd.learning.tracking import track
+from cobot_lfd.learning.mixtures.encoding import Encoding
+from cobot_lfd.learning.product import symmetric
+from cobot_lfd.learning.product.approach import ApproachAngles
+from cobot_lfd.learning.product.gather import Visits, gather
+from cobot_lfd.learning.product.tracking import track
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.approach import ApproachAngles
 from cobot_lfd.learning.data import Scenes, TaskData
-from cobot_lfd.learning.directions import nearest_directions, sequence_directions
-from cobot_lfd.learning.product import (
+from cobot_lfd.learning.mixtures.profile import Profile
+from cobot_lfd.learning.product.approach import ApproachAngles
+from cobot_lfd.learning.product.directions import nearest_directions, sequence_directions
+from cobot_lfd.learning.product.information import (
     Information,
     oriented_information,
     oriented_means,
     ring_information,
 )
-from cobot_lfd.learning.profile import Profile
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,8 +9,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning import metrics
 from cobot_lfd.learning.data import TaskDemonstration, stack_scenes
-from cobot_lfd.learning.model import TaskParameterisedGMM
-from cobot_lfd.learning.synthetic import (
+from cobot_lfd.learning.experiments.synthetic import (
     TASKS,
     SyntheticTask,
     demonstrations,
@@ -21,6 +20,7 @@ from cobot_lfd.learning.synthetic import (
     recorded,
     true_path,
 )
+from cobot_lfd.learning.model import TaskParameterisedGMM
 
 Fit = Callable[[Sequence[TaskDemonstration]], TaskParameterisedGMM]
 """A method: from demonstrations to a model."""

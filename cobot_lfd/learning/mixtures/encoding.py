@@ -7,10 +7,10 @@ import numpy as np
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.data import TaskData
-from cobot_lfd.learning.em import EMFit, EMSettings, fit_mixture
-from cobot_lfd.learning.kernel import kernel_statistics, kernel_weights, local_linear_weights
-from cobot_lfd.learning.mixture import Mixture, regress
-from cobot_lfd.learning.profile import Profile
+from cobot_lfd.learning.mixtures.em import EMFit, EMSettings, fit_mixture
+from cobot_lfd.learning.mixtures.kernel import kernel_statistics, kernel_weights, local_linear_weights
+from cobot_lfd.learning.mixtures.mixture import Mixture, regress
+from cobot_lfd.learning.mixtures.profile import Profile
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.learning.mixture import Mixture
-from cobot_lfd.learning.sharing import Sharing, share
+from cobot_lfd.learning.mixtures.mixture import Mixture
+from cobot_lfd.learning.mixtures.sharing import Sharing, share
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cobot_lfd.learning.mixture import Mixture
+from cobot_lfd.learning.mixtures.mixture import Mixture
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,9 @@ from scipy.linalg import eigh
 from scipy.ndimage import gaussian_filter1d
 
 from cobot_lfd.arrays import Array
+from cobot_lfd.learning.course.features import FeatureSet, scene_features
+from cobot_lfd.learning.course.splines import even_basis, fine_derivative, roughness_penalty
 from cobot_lfd.learning.data import Scenes
-from cobot_lfd.learning.features import FeatureSet, scene_features
-from cobot_lfd.learning.splines import even_basis, fine_derivative, roughness_penalty
 
 N_FUNCTIONS = 36
 """Spline functions along the task: enough for features of 3 % of the way."""

@@ -5,8 +5,8 @@ from enum import Enum
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import FrameKind
-from cobot_lfd.learning.bearing import BearingTest, bearing_evidence
 from cobot_lfd.learning.data import TaskData
+from cobot_lfd.learning.kinds.bearing import BearingTest, bearing_evidence
 
 
 class Certainty(Enum):

@@ -1,0 +1,1 @@
+"""The improved generator: regression on the whole scene along the way, with its timing."""
