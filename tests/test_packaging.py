@@ -3,7 +3,10 @@
 import json
 import subprocess
 import sys
+from importlib.metadata import distribution
 from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
 from hatchling.builders.wheel import WheelBuilder
@@ -41,6 +44,12 @@ def run_elsewhere(code: str, *arguments: str, cwd: Path) -> str:
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=True).stdout
 
 
+def installed_root() -> Path:
+    """The checkout that the environment's editable install points to; of several worktrees, one is it."""
+    source = json.loads(distribution("cobot-lfd").read_text("direct_url.json") or "{}")
+    return Path(url2pathname(urlsplit(source["url"]).path))
+
+
 @pytest.fixture(scope="module")
 def wheel_files() -> set[str]:
     """The files that the wheel's configuration includes, relative to the project's root."""
@@ -51,7 +60,7 @@ def wheel_files() -> set[str]:
 def test_each_import_name_means_our_own_package(package: str, tmp_path: Path) -> None:
     """Packages named robots and scenes exist elsewhere; ours must be the ones that are found."""
     origin = Path(run_elsewhere(FIND_PACKAGE, package, cwd=tmp_path).strip())
-    assert origin == ROOT / package / "__init__.py"
+    assert origin == installed_root() / package / "__init__.py"
 
 
 @pytest.mark.parametrize("pattern", ["*.py", "*.toml", "py.typed"])
