@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cobot_lfd.app.episodes import RecordedEpisode
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.results import EpisodeResult, SeenObject
 from cobot_lfd.detection import Detection
 from cobot_lfd.frame import Frame

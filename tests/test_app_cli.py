@@ -8,7 +8,7 @@ import cv2
 import pytest
 
 from cobot_lfd.app.cli import main
-from cobot_lfd.app.store import list_episodes
+from cobot_lfd.app.demonstrations.store import list_episodes
 
 pytestmark = pytest.mark.simulator
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cobot_lfd.app.demonstrations.store import load_demonstrations, load_episode
 from cobot_lfd.app.evaluation.contender import Contender, fit_method, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_from_bytes, demonstrations_to_bytes
 from cobot_lfd.app.evaluation.measures import hand_path, measures_beside
@@ -19,7 +20,6 @@ from cobot_lfd.app.evaluation.run import Where, run
 from cobot_lfd.app.perceive import View
 from cobot_lfd.app.provenance import Provenance
 from cobot_lfd.app.run_folder import RunFolder
-from cobot_lfd.app.store import load_demonstrations, load_episode
 from cobot_lfd.errors import CobotError, DataError, DescriptionError, ModelError
 from cobot_lfd.outcome import Outcome
 from scenes import load_scene

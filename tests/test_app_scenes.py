@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cobot_lfd.app.episode import Bench, run_episode
-from cobot_lfd.app.script import HAND_STREAM, write_script
+from cobot_lfd.app.recording.script import HAND_STREAM, write_script
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.learning.model import TaskParameterisedGMM
 from cobot_lfd.outcome import Outcome

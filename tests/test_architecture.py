@@ -91,7 +91,7 @@ def simulator_outside_its_rooms(found: Import) -> bool:
 
 
 def opencv_outside_its_rooms(found: Import) -> bool:
-    allowed = ("perception/*", "cobot_lfd/app/draw.py", "cobot_lfd/app/video.py")
+    allowed = ("perception/*", "cobot_lfd/app/pictures/draw.py", "cobot_lfd/app/pictures/video.py")
     return found.of("cv2") and not found.within(*allowed)
 
 
@@ -188,7 +188,7 @@ def test_the_sources_are_found(imports: list[Import]) -> None:
         (
             core_sees_outward,
             "cobot_lfd/learning/model.py",
-            "from cobot_lfd.app.store import save_episode",
+            "from cobot_lfd.app.recording.record import lead",
         ),
         (core_sees_outward, "cobot_lfd/learning/model.py", "from cobot_lfd import app"),
         (core_sees_outward, "cobot_lfd/learning/model.py", "from ..app import store"),
@@ -199,16 +199,16 @@ def test_the_sources_are_found(imports: list[Import]) -> None:
         (middle_sees_sideways_or_up, "perception/boxes.py", "import scenes.world as w"),
         (middle_sees_sideways_or_up, "robots/arm.py", "from cobot_lfd.app import store"),
         (middle_sees_sideways_or_up, "robots/panda/x.py", "if TYPE_CHECKING:\n    import perception"),
-        (simulator_outside_its_rooms, "cobot_lfd/app/record.py", "import pybullet as p"),
+        (simulator_outside_its_rooms, "cobot_lfd/app/recording/record.py", "import pybullet as p"),
         (simulator_outside_its_rooms, "perception/boxes.py", "from pybullet_utils import bullet_client"),
         (simulator_outside_its_rooms, "cobot_lfd/pose.py", "import pybullet_data"),
         (simulator_outside_its_rooms, "cobot_lfd/pose.py", "import_quietly('pybullet')"),
-        (opencv_outside_its_rooms, "cobot_lfd/app/record.py", "import cv2"),
+        (opencv_outside_its_rooms, "cobot_lfd/app/recording/record.py", "import cv2"),
         (opencv_outside_its_rooms, "scenes/view.py", "try:\n    import cv2\nexcept ImportError:\n    pass"),
         (ruckig_outside_timing, "cobot_lfd/motion/path.py", "from ruckig import Ruckig"),
         (viser_outside_studio, "cobot_lfd/app/cli.py", "import viser"),
-        (plotting_at_start, "cobot_lfd/app/plot.py", "import matplotlib.pyplot as plt"),
-        (plotting_at_start, "cobot_lfd/app/plot.py", "class A:\n    from matplotlib import figure"),
+        (plotting_at_start, "cobot_lfd/app/pictures/plot.py", "import matplotlib.pyplot as plt"),
+        (plotting_at_start, "cobot_lfd/app/pictures/plot.py", "class A:\n    from matplotlib import figure"),
         (unknown_plotting, "cobot_lfd/learning/model.py", "def f():\n    import matplotlib"),
         (tools_or_tests_imported, "cobot_lfd/app/cli.py", "from tools import benchmark"),
         (hidden_import, "cobot_lfd/frame.py", "from importlib import import_module"),
@@ -227,11 +227,11 @@ def test_a_violation_is_caught(rule: Callable[[Import], bool], file: str, source
         (core_sees_outward, "cobot_lfd/frame.py", "import robotsuite"),
         (middle_sees_sideways_or_up, "scenes/world.py", "from scenes.view import Light"),
         (simulator_outside_its_rooms, "robots/arm.py", "import pybullet"),
-        (opencv_outside_its_rooms, "cobot_lfd/app/video.py", "import cv2"),
+        (opencv_outside_its_rooms, "cobot_lfd/app/pictures/video.py", "import cv2"),
         (ruckig_outside_timing, "cobot_lfd/motion/timing_ruckig.py", "import ruckig"),
         (viser_outside_studio, "cobot_lfd/app/studio/page.py", "import viser"),
-        (plotting_at_start, "cobot_lfd/app/plot.py", "def f():\n    import matplotlib"),
-        (plotting_at_start, "cobot_lfd/app/plot.py", "if TYPE_CHECKING:\n    import matplotlib"),
+        (plotting_at_start, "cobot_lfd/app/pictures/plot.py", "def f():\n    import matplotlib"),
+        (plotting_at_start, "cobot_lfd/app/pictures/plot.py", "if TYPE_CHECKING:\n    import matplotlib"),
     ],
 )
 def test_what_is_allowed_is_not_caught(rule: Callable[[Import], bool], file: str, source: str) -> None:

@@ -23,6 +23,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import tyro
 
+from cobot_lfd.app.demonstrations.store import load_demonstrations
 from cobot_lfd.app.evaluation.contender import Contender
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_to_bytes
 from cobot_lfd.app.evaluation.drive import drive
@@ -32,12 +33,11 @@ from cobot_lfd.app.evaluation.plan import Plan, Trial
 from cobot_lfd.app.evaluation.run import Where, run
 from cobot_lfd.app.evaluation.workers import WorkerProcesses
 from cobot_lfd.app.provenance import Provenance
-from cobot_lfd.app.record import record_session
+from cobot_lfd.app.recording.record import record_session
 from cobot_lfd.app.report.content import gather
 from cobot_lfd.app.report.write import write_report
 from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.app.run_folder import RESULTS, RunFolder
-from cobot_lfd.app.store import load_demonstrations
 from cobot_lfd.outcome import Outcome, Verdict
 
 N_STAND_INS = 200

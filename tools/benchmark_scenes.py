@@ -12,13 +12,13 @@ from pathlib import Path
 
 import tyro
 
+from cobot_lfd.app.demonstrations.store import list_episodes
 from cobot_lfd.app.evaluation.options import PlanOptions
 from cobot_lfd.app.evaluation.run import Where, run
 from cobot_lfd.app.provenance import Provenance
-from cobot_lfd.app.record import record_session
+from cobot_lfd.app.recording.record import record_session
 from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.app.run_folder import PLAN, RunFolder
-from cobot_lfd.app.store import list_episodes
 from cobot_lfd.app.summary import wilson_interval
 from robots import has_urdf, load_robot, robot_names
 from scenes import scene_names, variant_names

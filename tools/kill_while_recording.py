@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from cobot_lfd.app.demos import find_damage
-from cobot_lfd.app.record import record_session
-from cobot_lfd.app.store import list_episodes, load_demonstrations, load_episode
+from cobot_lfd.app.demonstrations.folder import find_damage
+from cobot_lfd.app.demonstrations.store import list_episodes, load_demonstrations, load_episode
+from cobot_lfd.app.recording.record import record_session
 from cobot_lfd.learning.model import TaskParameterisedGMM
 
 _N_EPISODES = 5

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import tyro
 
-from cobot_lfd.app.draw import draw_detections, encode_small
 from cobot_lfd.app.perceive import perceive
+from cobot_lfd.app.pictures.draw import draw_detections, encode_small
 from scenes import World, load_scene, object_models, scene_names
 
 WIDTH = 400  # [px]

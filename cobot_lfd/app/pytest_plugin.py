@@ -70,7 +70,7 @@ def robot(request: pytest.FixtureRequest) -> str:
 @pytest.fixture(scope="session")
 def _recordings(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str, int], Path]:
     """Records demonstrations of a scene once for all modules that need them."""
-    from cobot_lfd.app.record import record_session
+    from cobot_lfd.app.recording.record import record_session
 
     folders: dict[tuple[str, str, int], Path] = {}
 
@@ -95,7 +95,7 @@ def demonstrations_folder(
 @pytest.fixture(scope="module")
 def demonstrations(demonstrations_folder: Path) -> "list[Demonstration]":
     """Demonstrations of the scene by the scripted hand, recorded in the simulator."""
-    from cobot_lfd.app.store import load_demonstrations
+    from cobot_lfd.app.demonstrations.store import load_demonstrations
 
     return load_demonstrations(demonstrations_folder)
 
@@ -124,10 +124,10 @@ def episode(
     request: pytest.FixtureRequest, scene: str, robot: str, model_file: Path, tmp_path: Path
 ) -> Callable[..., TestedEpisode]:
     """Runs the episode of a seed: picture, path, motion, and the physics' judgement."""
-    from cobot_lfd.app.draw import save_picture
     from cobot_lfd.app.episode import run_episode
     from cobot_lfd.app.evaluate import Job, bench_for
-    from cobot_lfd.app.illustrate import drawn_view
+    from cobot_lfd.app.pictures.draw import save_picture
+    from cobot_lfd.app.pictures.illustrate import drawn_view
 
     def run(seed: int = 1000, *, covered: bool = False) -> TestedEpisode:
         bench = bench_for(Job(scene, robot, model_file, covered))

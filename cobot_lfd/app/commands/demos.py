@@ -7,7 +7,11 @@ import numpy as np
 from tyro.conf import Positional, arg, subcommand
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.demos import (
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.demonstrations.exchange.importing import IMPORTED, import_path
+from cobot_lfd.app.demonstrations.exchange.lerobot import export_lerobot
+from cobot_lfd.app.demonstrations.exchange.robomimic import export_robomimic
+from cobot_lfd.app.demonstrations.folder import (
     UnreadableFile,
     find_damage,
     list_trash,
@@ -15,15 +19,11 @@ from cobot_lfd.app.demos import (
     restore_episode,
     trash_episode,
 )
-from cobot_lfd.app.episodes import RecordedEpisode
-from cobot_lfd.app.exchange.importing import IMPORTED, import_path
-from cobot_lfd.app.exchange.lerobot import export_lerobot
-from cobot_lfd.app.exchange.robomimic import export_robomimic
-from cobot_lfd.app.plot_episode import plot_episode
-from cobot_lfd.app.quality import Quality, assess
-from cobot_lfd.app.replay import By
-from cobot_lfd.app.replay import replay as replay_episode
-from cobot_lfd.app.store import episode_number, list_episodes, load_episode, save_episode
+from cobot_lfd.app.demonstrations.quality import Quality, assess
+from cobot_lfd.app.demonstrations.replay import By
+from cobot_lfd.app.demonstrations.replay import replay as replay_episode
+from cobot_lfd.app.demonstrations.store import episode_number, list_episodes, load_episode, save_episode
+from cobot_lfd.app.pictures.plot_episode import plot_episode
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import DataError
 

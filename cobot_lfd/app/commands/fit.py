@@ -7,7 +7,7 @@ from typing import Literal
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE
-from cobot_lfd.app.store import load_demonstrations
+from cobot_lfd.app.demonstrations.store import load_demonstrations
 from cobot_lfd.learning.model import TaskParameterisedGMM
 
 

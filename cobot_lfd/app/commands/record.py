@@ -8,7 +8,7 @@ from tyro.conf import Positional
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
 from cobot_lfd.app.commands.options import require_positive
 from cobot_lfd.app.progress import progress
-from cobot_lfd.app.record import record_session
+from cobot_lfd.app.recording.record import record_session
 
 
 def record(

@@ -6,10 +6,10 @@ from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
 from cobot_lfd.app.disk import write_file
-from cobot_lfd.app.draw import save_picture
 from cobot_lfd.app.episode import run_episode
 from cobot_lfd.app.evaluation.perform import bench_of, film
-from cobot_lfd.app.illustrate import drawn_view
+from cobot_lfd.app.pictures.draw import save_picture
+from cobot_lfd.app.pictures.illustrate import drawn_view
 from cobot_lfd.app.run_folder import RunFolder
 
 

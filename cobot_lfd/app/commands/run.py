@@ -6,13 +6,13 @@ from pathlib import Path
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.draw import save_picture
+from cobot_lfd.app.demonstrations.store import load_demonstrations
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluate import Job, bench_for
-from cobot_lfd.app.film import filming
-from cobot_lfd.app.illustrate import drawn_view
-from cobot_lfd.app.plot import plot_model
-from cobot_lfd.app.store import load_demonstrations
+from cobot_lfd.app.pictures.draw import save_picture
+from cobot_lfd.app.pictures.film import filming
+from cobot_lfd.app.pictures.illustrate import drawn_view
+from cobot_lfd.app.pictures.plot import plot_model
 
 
 def run(

@@ -7,8 +7,8 @@ from pathlib import Path
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE
+from cobot_lfd.app.demonstrations.store import load_demonstrations
 from cobot_lfd.app.evaluation.validate import Validation, cross_validate
-from cobot_lfd.app.store import load_demonstrations
 
 _PAPER = (
     ("sorting, all frames oriented", 0.0127, 0.0004, 0.0412),

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from cobot_lfd.app.script import HAND_STREAM, write_script
+from cobot_lfd.app.recording.script import HAND_STREAM, write_script
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame
 from cobot_lfd.learning.metrics import (

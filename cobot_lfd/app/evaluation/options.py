@@ -5,12 +5,12 @@ from typing import Annotated
 
 from pydantic import Field, ValidationError
 
+from cobot_lfd.app.demonstrations.store import load_demonstrations
 from cobot_lfd.app.disk import told
 from cobot_lfd.app.evaluation.contender import Contender, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_to_bytes
 from cobot_lfd.app.evaluation.perturbation import Perturbation, Sweep
 from cobot_lfd.app.evaluation.plan import Plan
-from cobot_lfd.app.store import load_demonstrations
 from cobot_lfd.description_file import DescriptionModel, read_description
 from cobot_lfd.errors import CobotError, DataError
 from cobot_lfd.learning.model import TaskParameterisedGMM

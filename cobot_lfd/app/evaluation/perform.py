@@ -6,14 +6,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from traceback import format_exception_only
 
-from cobot_lfd.app.draw import encode_small
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluation.contender import Contender, learnt
 from cobot_lfd.app.evaluation.measures import path_measures
 from cobot_lfd.app.evaluation.perturbation import Perturbation
 from cobot_lfd.app.evaluation.plan import Trial
-from cobot_lfd.app.film import filming
-from cobot_lfd.app.illustrate import drawn_view
+from cobot_lfd.app.pictures.draw import encode_small
+from cobot_lfd.app.pictures.film import filming
+from cobot_lfd.app.pictures.illustrate import drawn_view
 from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.errors import CobotError
 from cobot_lfd.outcome import Outcome, Verdict

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
-from cobot_lfd.app.episodes import RecordedEpisode
-from cobot_lfd.app.quality import Quality, assess
-from cobot_lfd.app.store import episode_number, list_episodes, load_episode
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.demonstrations.quality import Quality, assess
+from cobot_lfd.app.demonstrations.store import episode_number, list_episodes, load_episode
 from cobot_lfd.errors import DataError
 
 

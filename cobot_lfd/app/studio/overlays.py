@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import viser
 
-from cobot_lfd.app.episodes import RecordedEpisode
-from cobot_lfd.app.plot import ellipse_axes
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.pictures.plot import ellipse_axes
 from cobot_lfd.app.studio.looks import link_poses
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import Frame

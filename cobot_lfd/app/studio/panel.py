@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import viser
 
-from cobot_lfd.app.draw import draw_detections
 from cobot_lfd.app.perceive import View
+from cobot_lfd.app.pictures.draw import draw_detections
 from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.kept import Kept
 from cobot_lfd.app.studio.session import Session

@@ -6,16 +6,16 @@ from pathlib import Path
 from queue import SimpleQueue
 from time import sleep
 
-from cobot_lfd.app.carry import trimmed_carry
-from cobot_lfd.app.demos import restore_episode, trash_episode
+from cobot_lfd.app.demonstrations.folder import restore_episode, trash_episode
+from cobot_lfd.app.demonstrations.replay import replay_in
+from cobot_lfd.app.demonstrations.store import episode_number, save_episode
 from cobot_lfd.app.episode import Bench, run_episode
 from cobot_lfd.app.execute import Observer
-from cobot_lfd.app.guided_hand import GuidedHand
-from cobot_lfd.app.hand import HandAction
-from cobot_lfd.app.record import seeds_in
-from cobot_lfd.app.recorder import Recorder
-from cobot_lfd.app.replay import replay_in
-from cobot_lfd.app.store import episode_number, save_episode
+from cobot_lfd.app.recording.carry import trimmed_carry
+from cobot_lfd.app.recording.guided_hand import GuidedHand
+from cobot_lfd.app.recording.hand import HandAction
+from cobot_lfd.app.recording.record import seeds_in
+from cobot_lfd.app.recording.recorder import Recorder
 from cobot_lfd.app.studio.audience import Audience, Mode
 from cobot_lfd.app.studio.coverage import suggest_next
 from cobot_lfd.app.studio.kept import Kept

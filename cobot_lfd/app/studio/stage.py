@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from cobot_lfd.app.execute import Observer
-from cobot_lfd.app.guided_hand import GuidedHand
-from cobot_lfd.app.hand import Hand
 from cobot_lfd.app.perceive import View, perceive
-from cobot_lfd.app.record import lead
-from cobot_lfd.app.recorder import Recorder
+from cobot_lfd.app.recording.guided_hand import GuidedHand
+from cobot_lfd.app.recording.hand import Hand
+from cobot_lfd.app.recording.record import lead
+from cobot_lfd.app.recording.recorder import Recorder
 from cobot_lfd.app.studio.audience import Audience
 from cobot_lfd.app.studio.clock import Clock
 from cobot_lfd.app.turns import turn_choices

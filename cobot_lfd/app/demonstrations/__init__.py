@@ -1,0 +1,1 @@
+"""Demonstrations on disk: their files, their care, their quality, and their way to other programs."""

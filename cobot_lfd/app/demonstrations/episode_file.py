@@ -1,0 +1,112 @@
+"""The layout of an episode in HDF5: each series a data set with its unit, each detection a group."""
+
+import io
+
+import h5py
+import numpy as np
+
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, seal, unseal
+from cobot_lfd.detection import Detection
+from cobot_lfd.errors import DataError
+from cobot_lfd.frame import Frame
+from cobot_lfd.outcome import Outcome, Verdict
+
+TITLE = "cobot-lfd episode"
+VERSION = 1
+"""Raised whenever a program of the version before could not read what is written now."""
+
+UNITS = {
+    "times": "s",
+    "joint_positions": "rad",
+    "joint_velocities": "rad/s",
+    "joint_torques": "N m",
+    "tool_positions": "m",
+    "tool_quaternions": "1 (x, y, z, w)",
+    "gripper_openings": "m",
+    "hand_forces": "N",
+    "hand_torques": "N m",
+    "carrying": "1 (true or false)",
+    "picture": "1 (RGB, 0 to 255)",
+}
+"""Unit of every series of an episode."""
+
+DETECTION_UNITS = {"position": "m", "angle": "rad", "covariance": "m, m, rad, squared", "contour": "px"}
+"""Unit of every array of a detection."""
+
+
+def episode_to_bytes(episode: RecordedEpisode) -> bytes:
+    """The whole file of an episode: equal episodes give equal bytes."""
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w", userblock_size=BLOCK_SIZE) as file:
+        file.attrs["scene"] = episode.scene
+        file.attrs["robot"] = episode.robot
+        file.attrs["seed"] = episode.seed
+        file.attrs["outcome"] = episode.verdict.outcome.kind
+        file.attrs["detail"] = episode.verdict.detail
+        for name, unit in UNITS.items():
+            _write_array(file, name, getattr(episode, name), unit)
+        for index, detection in enumerate(episode.detections):
+            _write_detection(file.create_group(f"detections/{index}"), detection)
+    return seal(buffer.getvalue()[BLOCK_SIZE:], title=TITLE, version=VERSION)
+
+
+def episode_from_bytes(sealed: bytes, name: str) -> RecordedEpisode:
+    """The episode that a file holds.
+
+    Args:
+        sealed: The bytes of the whole file.
+        name: What the file is called in an error message.
+
+    Raises:
+        DataError: If the file is foreign, damaged or of another version, or its contents are no episode.
+    """
+    unseal(sealed, title=TITLE, version=VERSION, name=name)
+    try:
+        with h5py.File(io.BytesIO(sealed), "r") as file:
+            return _read_episode(file)
+    except (KeyError, TypeError, ValueError, OSError) as error:
+        raise DataError(f"{name} holds no valid episode: {error}. Record it again.") from error
+
+
+def _write_array(group: h5py.Group, name: str, array: object, unit: str) -> None:
+    values = np.asarray(array)
+    packing = {"compression": "gzip", "shuffle": True} if values.size and values.ndim else {}
+    group.create_dataset(name, data=values, **packing).attrs["unit"] = unit
+
+
+def _write_detection(group: h5py.Group, detection: Detection) -> None:
+    group.attrs["name"] = detection.name
+    group.attrs["symmetry"] = detection.symmetry
+    group.attrs["confidence"] = detection.confidence
+    arrays = {
+        "position": detection.frame.position,
+        "angle": detection.frame.angle,
+        "covariance": detection.covariance,
+        "contour": detection.contour,
+    }
+    for name, array in arrays.items():
+        _write_array(group, name, array, DETECTION_UNITS[name])
+
+
+def _read_episode(file: h5py.File) -> RecordedEpisode:
+    detections = file.get("detections", {})
+    return RecordedEpisode(
+        scene=str(file.attrs["scene"]),
+        robot=str(file.attrs["robot"]),
+        seed=int(file.attrs["seed"]),
+        verdict=Verdict(Outcome.from_kind(str(file.attrs["outcome"])), str(file.attrs["detail"])),
+        detections=tuple(_read_detection(detections[str(index)]) for index in range(len(detections))),
+        **{name: file[name][()] for name in UNITS},
+    )
+
+
+def _read_detection(group: h5py.Group) -> Detection:
+    return Detection(
+        name=str(group.attrs["name"]),
+        frame=Frame(group["position"][()], float(group["angle"][()])),
+        symmetry=int(group.attrs["symmetry"]),
+        covariance=group["covariance"][()],
+        confidence=float(group.attrs["confidence"]),
+        contour=group["contour"][()],
+    )

@@ -1,0 +1,1 @@
+"""Recording: hands that lead the arm, and what is kept of it."""
