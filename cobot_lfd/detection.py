@@ -1,9 +1,15 @@
 """What perception is told to look for, and what it says it saw."""
 
 from dataclasses import dataclass
+from typing import Literal
 
+from cobot_lfd.appearance import Appearance
 from cobot_lfd.arrays import Array, frozen_array
 from cobot_lfd.frame import Frame
+from cobot_lfd.marker import Marker
+
+DetectorKind = Literal["shape", "features", "marker"]
+"""How an object is found: by its colour and outline, by what is on its face, by an ArUco marker on it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,6 +26,9 @@ class ObjectModel:
             1 where the outline tells the orientation.
         base_z: Height of the object's foot in the world [m]; the walls below the outline may be seen too.
         holes: Contours of openings in the same plane [m]: a container's inner rim.
+        found_by: Which detector finds it.
+        marker: The marker that lies on it, in the middle of its frame, where a marker finds it.
+        appearance: What its face looks like, where features find it.
     """
 
     name: str
@@ -29,6 +38,9 @@ class ObjectModel:
     symmetry: int
     base_z: float
     holes: tuple[Array, ...] = ()
+    found_by: DetectorKind = "shape"
+    marker: Marker | None = None
+    appearance: Appearance | None = None
 
     def __post_init__(self) -> None:
         """Copy and check."""

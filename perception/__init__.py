@@ -7,6 +7,8 @@ from perception.calibration import CameraCalibration as CameraCalibration
 from perception.calibration import LensCalibration as LensCalibration
 from perception.calibration import calibrate_camera as calibrate_camera
 from perception.calibration import calibrate_lens as calibrate_lens
-from perception.markers import Marker as Marker
-from perception.markers import detect_markers as detect_markers
-from perception.shape_detector import detect as detect
+from perception.detector import Detector as Detector
+from perception.detector import detect as detect
+from perception.detector import detector_for as detector_for
+from perception.markers import MarkerDetector as MarkerDetector
+from perception.shape_detector import ShapeDetector as ShapeDetector

@@ -1,16 +1,15 @@
 """Finds ArUco markers: black and white squares with a number, the reference that people know."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
+from cobot_lfd.marker import Marker
 from perception.picture import Picture, check_picture
 
 _DICTIONARY = cv2.aruco.DICT_4X4_50
@@ -19,64 +18,39 @@ _STEP = 1e-5  # For the derivative of the projection [m].
 
 
 @dataclass(frozen=True, slots=True)
-class Marker:
-    """A marker that lies flat on something.
+class MarkerDetector:
+    """Finds markers.
 
     Attributes:
-        name: Name of the frame that it marks; the frame is in its middle, x to its right, y to its top.
-        number: Its number in the dictionary of 4 x 4 markers, 0 to 49.
-        size: Length of the black square's sides [m].
-        z: Its height in the world [m].
-    """
-
-    name: str
-    number: int
-    size: float
-    z: float
-
-    @property
-    def corners(self) -> Array:
-        """Top left, top right, bottom right, bottom left in the marker's frame [m], shape (4, 2)."""
-        return np.array([[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]]) * self.size / 2
-
-
-def marker_image(number: int, pixels_per_cell: int = 1) -> NDArray[np.uint8]:
-    """A marker as it is printed, with its black border, 0 or 255, shape (6 n, 6 n)."""
-    dictionary = cv2.aruco.getPredefinedDictionary(_DICTIONARY)
-    return np.asarray(dictionary.generateImageMarker(number, 6 * pixels_per_cell), dtype=np.uint8)
-
-
-def detect_markers(
-    picture: Picture, camera: Camera, markers: Sequence[Marker]
-) -> tuple[Detection | NotSeen, ...]:
-    """Find markers in a picture.
-
-    Args:
-        picture: Red, green, blue, shape (height, width, 3).
-        camera: The camera that took it.
         markers: What to look for.
-
-    Returns:
-        For each marker what was seen, or why not, in the markers' order.
-
-    Raises:
-        ValueError: If the picture is not one of this camera.
     """
-    check_picture(picture, camera)
+
+    markers: tuple[Marker, ...]
+
+    def detect(self, picture: Picture, camera: Camera) -> tuple[Detection | NotSeen, ...]:
+        """For each marker what was seen in a picture, or why not, in the markers' order."""
+        check_picture(picture, camera)
+        found = _squares(picture)
+        return tuple(
+            _detection(camera, marker, found[marker.number])
+            if marker.number in found
+            else NotSeen(marker.name, f"marker {marker.number} is not in the picture, or not legible.")
+            for marker in self.markers
+        )
+
+
+def _squares(picture: Picture) -> dict[int, Array]:
+    """Number of each marker in a picture to its corners [px], shape (4, 2)."""
     parameters = cv2.aruco.DetectorParameters()
     parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
     detector = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(_DICTIONARY), parameters)
     corners, numbers, _ = detector.detectMarkers(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY))
-    found: dict[int, Array] = {}
-    if numbers is not None:
-        for number, square in zip(np.ravel(numbers), corners, strict=True):
-            found[int(number)] = np.asarray(square, dtype=np.float64).reshape(4, 2)
-    return tuple(
-        _detection(camera, marker, found[marker.number])
-        if marker.number in found
-        else NotSeen(marker.name, f"marker {marker.number} is not in the picture, or not legible.")
-        for marker in markers
-    )
+    if numbers is None:
+        return {}
+    return {
+        int(number): np.asarray(square, dtype=np.float64).reshape(4, 2)
+        for number, square in zip(np.ravel(numbers), corners, strict=True)
+    }
 
 
 def _detection(camera: Camera, marker: Marker, pixels: Array) -> Detection:

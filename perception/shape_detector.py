@@ -1,6 +1,7 @@
 """Finds objects by their colour and the shape of their outline."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -26,36 +27,33 @@ _N_REGIONS = 4  # The largest regions are tried.
 _COARSE_SIZE = 8.0  # Least size of an object in the picture in which regions are looked for [px].
 
 
-def detect(
-    picture: Picture, camera: Camera, models: Sequence[ObjectModel]
-) -> tuple[Detection | NotSeen, ...]:
-    """Find objects in a picture, each by its colour and its outline.
+@dataclass(frozen=True, slots=True, eq=False)
+class ShapeDetector:
+    """Finds objects, each by its colour and its outline.
 
-    Args:
-        picture: Red, green, blue, shape (height, width, 3).
-        camera: The camera that took it.
+    Attributes:
         models: What to look for.
-
-    Returns:
-        For each model what was seen, or why not, in the models' order.
-
-    Raises:
-        ValueError: If the picture is not one of this camera.
     """
-    check_picture(picture, camera)
-    if not models:
-        return ()
-    segmentation = segment(picture, models, _scale(models, camera))
-    if segmentation is None:
-        return tuple(NotSeen(m.name, "the picture is too dark; is the camera covered?") for m in models)
-    tried = [
-        [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
-        for model, regions in zip(models, segmentation.regions, strict=True)
-    ]
-    return tuple(
-        _told(model, camera, chosen, results)
-        for model, chosen, results in zip(models, assign(models, tried), tried, strict=True)
-    )
+
+    models: tuple[ObjectModel, ...]
+
+    def detect(self, picture: Picture, camera: Camera) -> tuple[Detection | NotSeen, ...]:
+        """For each object what was seen in a picture, or why not, in the models' order."""
+        check_picture(picture, camera)
+        if not self.models:
+            return ()
+        segmentation = segment(picture, self.models, _scale(self.models, camera))
+        if segmentation is None:
+            dark = "the picture is too dark; is the camera covered?"
+            return tuple(NotSeen(model.name, dark) for model in self.models)
+        tried = [
+            [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
+            for model, regions in zip(self.models, segmentation.regions, strict=True)
+        ]
+        return tuple(
+            _told(model, camera, chosen, results)
+            for model, chosen, results in zip(self.models, assign(self.models, tried), tried, strict=True)
+        )
 
 
 def _scale(models: Sequence[ObjectModel], camera: Camera) -> int:

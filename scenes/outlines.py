@@ -4,6 +4,8 @@ import numpy as np
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import ObjectModel
+from cobot_lfd.marker import Marker
+from scenes.artwork import MarkerPrint, marker_size
 from scenes.description import SceneDescription
 from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription
 from scenes.union import union_outlines
@@ -29,7 +31,16 @@ def object_model(name: str, item: ObjectDescription) -> ObjectModel:
         symmetry=_N_CIRCLE if isinstance(item, Ball) else _symmetry(outline),
         base_z=base_z,
         holes=tuple(holes),
+        found_by=item.found_by,
+        marker=_marker(name, item),
     )
+
+
+def _marker(name: str, item: ObjectDescription) -> Marker | None:
+    """The marker that is printed on an object, if there is one."""
+    if not isinstance(item, Box) or not isinstance(item.print, MarkerPrint):
+        return None
+    return Marker(name, item.print.number, marker_size(item.size[:2]), item.size[2])
 
 
 def _seen_from_above(item: ObjectDescription) -> tuple[Array, list[Array], float, float]:

@@ -4,6 +4,7 @@ import importlib.util
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
@@ -105,8 +106,9 @@ def take_picture(
         )
     shifts = sample_pattern(seen.samples) + _GRID_OFFSET[renderer]
     shots = [_shoot(client, ideal, shift, light, renderer) for shift in shifts]
-    picture = shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
-    picture = draw_prints(picture, ideal, prints, _PRINT_SAMPLES)
+    colours = [shot.colours for shot in shots]
+    picture = colours[0] if len(shots) == 1 else np.rint(np.mean(colours, axis=0)).astype(np.uint8)
+    picture = draw_prints(picture, ideal, prints, _PRINT_SAMPLES, shots[0].depth)
     if seen.lens == Lens() and seen.sensor == Sensor():
         return picture
     return on_sensor(through_lens(picture, ideal, camera, seen.lens), seen.sensor, generator)
@@ -122,7 +124,20 @@ def sample_pattern(n: int) -> Array:
     return (np.column_stack([np.arange(n), ranks]) + 0.5) / n - 0.5
 
 
-def _shoot(client: BulletClient, camera: Camera, shift: Array, light: Light, renderer: Renderer) -> Picture:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shot:
+    """What a renderer draws.
+
+    Attributes:
+        colours: Red, green, blue, shape (height, width, 3).
+        depth: Distance from the camera along its axis [m], shape (height, width).
+    """
+
+    colours: Picture
+    depth: Array
+
+
+def _shoot(client: BulletClient, camera: Camera, shift: Array, light: Light, renderer: Renderer) -> _Shot:
     """One ray per pixel, through a point off the pixel's centre by ``shift`` [px]."""
     with quiet_output():
         image = client.getCameraImage(
@@ -140,7 +155,12 @@ def _shoot(client: BulletClient, camera: Camera, shift: Array, light: Light, ren
             renderer=pybullet.ER_TINY_RENDERER if renderer == "tiny" else pybullet.ER_BULLET_HARDWARE_OPENGL,
             flags=pybullet.ER_NO_SEGMENTATION_MASK,
         )
-    return np.array(image[2], dtype=np.uint8).reshape(camera.height, camera.width, 4)[..., :3].copy()
+    size = (camera.height, camera.width)
+    buffer = np.array(image[3], dtype=np.float64).reshape(size)
+    return _Shot(
+        np.array(image[2], dtype=np.uint8).reshape(*size, 4)[..., :3].copy(),
+        _FAR * _NEAR / (_FAR - (_FAR - _NEAR) * buffer),
+    )
 
 
 def view_matrix(camera: Camera) -> Array:

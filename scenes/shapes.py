@@ -6,7 +6,9 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from cobot_lfd.description_file import DescriptionModel
+from cobot_lfd.detection import DetectorKind
 from cobot_lfd.frame import Frame
+from scenes.artwork import PrintDescription
 from scenes.colours import Colour, colour_of
 from scenes.quantities import Length, Positive, Range, Vector, as_range
 
@@ -51,6 +53,7 @@ class _Object(DescriptionModel):
         place: Where the object may stand.
         seen: Whether the camera sees it; an object that it does not see stands at a fixed, known place.
         frame: Whether its frame is a parameter of the task; it is not for what only stands in the way.
+        detector: What finds it in pictures; by default its colour and outline, or what is printed on it.
     """
 
     colour: ColourValue
@@ -61,6 +64,12 @@ class _Object(DescriptionModel):
     place: Placement
     seen: bool = True
     frame: bool = True
+    detector: DetectorKind | None = None
+
+    @property
+    def found_by(self) -> DetectorKind:
+        """What finds it in pictures."""
+        return self.detector or "shape"
 
     @model_validator(mode="after")
     def _known_where_not_seen(self) -> Self:
@@ -70,16 +79,54 @@ class _Object(DescriptionModel):
             )
         return self
 
+    @model_validator(mode="after")
+    def _some_detector_finds_it(self) -> Self:
+        if self.detector in ("features", "marker") and not isinstance(self, Box):
+            raise ValueError(
+                f"detector is '{self.detector}', which needs a print, and only a box can have one; "
+                "choose 'shape'."
+            )
+        return self
+
 
 class Box(_Object):
     """A solid box that stands on the table; its frame is in the middle of its foot.
 
     Attributes:
         size: Extent along the object's x, y and z axes [m].
+        print: What is printed on its upper face.
     """
 
     shape: Literal["box"]
     size: tuple[Length, Length, Length]
+    print: PrintDescription | None = None
+
+    @property
+    def found_by(self) -> DetectorKind:
+        """What finds it in pictures."""
+        return self.detector or self._fitting_detector
+
+    @property
+    def _fitting_detector(self) -> DetectorKind:
+        if self.print is None:
+            return "shape"
+        return "marker" if self.print.kind == "marker" else "features"
+
+    @model_validator(mode="after")
+    def _print_fits_the_detector(self) -> "Box":
+        fitting = self._fitting_detector
+        if self.detector in (None, fitting):
+            return self
+        if self.print is None:
+            example = '{ kind = "marker", number = 7 }' if self.detector == "marker" else '{ kind = "label" }'
+            raise ValueError(
+                f"detector is '{self.detector}', but nothing is printed on it that could be found; add "
+                f"print = {example}, or choose 'shape'."
+            )
+        raise ValueError(
+            f"detector is '{self.detector}', which cannot find a box with a {self.print.kind} printed on it; "
+            f"choose '{fitting}' or leave print out."
+        )
 
 
 class Container(_Object):

@@ -15,6 +15,7 @@ from cobot_lfd.quiet import quiet_output
 from scenes.bodies import add_object, add_table, object_pose, place_object
 from scenes.description import SceneDescription
 from scenes.placement import draw_placements
+from scenes.printed import printed_faces
 from scenes.prints import Print
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
 from scenes.view import CameraDescription, Light
@@ -53,6 +54,7 @@ class World:
         self.bodies: Mapping[str, int] = MappingProxyType(
             {name: add_object(self.client, description.objects[name], at) for name, at in placements.items()}
         )
+        self._printed_faces = printed_faces(description)
         self.watch = Watch(self.client, description, self.bodies)
 
     def __enter__(self) -> Self:
@@ -97,12 +99,18 @@ class World:
             covered: Whether something covers the lens; the picture is then black.
             camera: The camera; the scene's own by default.
             light: The light; the scene's own by default.
-            prints: Flat prints that are in the scene.
+            prints: Flat prints that are in the scene, besides those on its objects.
 
         Returns:
             Red, green, blue, shape (height, width, 3).
         """
         camera, light = camera or self.description.camera, light or self.description.light
+        objects = self.description.objects
+        on_objects = [
+            face.at(object_pose(self.client, self.bodies[face.name], objects[face.name]))
+            for face in self._printed_faces
+        ]
+        prints = [*on_objects, *prints]
         picture = take_picture(self.client, camera, light, self._renderer, self._sensor_noise, prints)
         return np.zeros_like(picture) if covered else picture
 

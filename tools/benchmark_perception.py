@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
-from cobot_lfd.detection import Detection, NotSeen, ObjectModel
+from cobot_lfd.detection import NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
-from perception import Marker, detect, detect_markers
-from perception.markers import marker_image
+from cobot_lfd.marker import Marker, marker_image
+from perception import Detector, MarkerDetector, ShapeDetector
 from perception.picture import Picture
 from perception.silhouette import silhouette_hull
 from scenes import CameraDescription, World, load_scene, object_models
@@ -124,7 +124,7 @@ def measure(scene: str, condition: Condition, n: int, seed: int) -> Iterator[Res
     """Find everything in the pictures of one condition, by its outline and by a marker in its place."""
     description, generator = load_scene(scene), np.random.default_rng(seed)
     models = object_models(description)
-    markers = [marker_for(model, number) for number, model in enumerate(models)]
+    markers = tuple(marker_for(model, number) for number, model in enumerate(models))
     seen = CameraDescription.model_validate(
         description.camera.model_dump()
         | {"samples": condition.samples, "lens": {"distortion": condition.distortion}}
@@ -139,21 +139,20 @@ def measure(scene: str, condition: Condition, n: int, seed: int) -> Iterator[Res
             plain = world.take_picture(camera=seen, light=light)
             marked = with_markers(plain, camera, markers, frames, condition.samples)
             spoil = spoiler(condition, camera, models, frames, generator)
-            yield from find("outline", detect, spoil(plain), camera, models, frames)
-            yield from find("marker", detect_markers, spoil(marked), camera, markers, frames)
+            yield from find("outline", ShapeDetector(models), spoil(plain), camera, frames)
+            yield from find("marker", MarkerDetector(markers), spoil(marked), camera, frames)
 
 
 def find(
     method: str,
-    detector: Callable[..., tuple[Detection | NotSeen, ...]],
+    detector: Detector,
     picture: Picture,
     camera: Camera,
-    things: Sequence[ObjectModel] | Sequence[Marker],
     frames: Mapping[str, Frame],
 ) -> Iterator[Result]:
     """Run a detector on a picture and compare what it finds with the truth."""
     began = process_time()
-    found = detector(picture, camera, things)
+    found = detector.detect(picture, camera)
     seconds = process_time() - began
     for thing in found:
         if isinstance(thing, NotSeen):
