@@ -117,6 +117,15 @@ def test_smoothing_leaves_parabolas_alone() -> None:
     assert_allclose(smooth, parabola, atol=1e-4)
 
 
+def test_a_smoothed_path_does_not_set_off_backwards() -> None:
+    """A movement from rest to rest goes one way; smoothed as strongly as is ever tried, it still does."""
+    u = np.linspace(0, 1, 200)
+    movement = (10 * u**3 - 15 * u**4 + 6 * u**5)[:, None]
+    smooth = read(readout(np.ones(200), 2e-6) @ movement, 200)
+    assert np.diff(smooth[:, 0]).min() > -1e-4
+    assert np.abs(smooth - movement).max() < 0.03
+
+
 def test_the_jerk_penalty_is_the_integral() -> None:
     """Of t³ the third derivative is 6, so the integral of its square is 36."""
     basis = even_basis(20, 400)
