@@ -17,8 +17,8 @@ def readout(variance: Array, weight: float) -> Array:
     """The linear map from positions over time to the spline that follows them with little jerk.
 
     The spline minimises the mean of |x(t) - y(t)|² v / variance(t), with v the variance's median, plus
-    ``weight`` times the integral of |x'''(t)|², and sets off and arrives at the pace at which y does. The same
-    map serves every axis and every scene, so that the result moves with the scene.
+    ``weight`` times the integral of |x'''(t)|², and sets off and arrives at the pace at which y does. The
+    same map serves every axis and every scene, so that the result moves with the scene.
 
     Args:
         variance: How far positions may be left, over time, shape (T,).
