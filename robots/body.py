@@ -66,8 +66,8 @@ class RobotBody:
 
     def place(self, positions: Array) -> None:
         """Set the joints to positions [rad], shape (n,), at rest and without physics."""
-        for joint, position in zip(self.joints, positions, strict=True):
-            self.client.resetJointState(self.id, joint, float(position))
+        places = np.asarray(positions, dtype=np.float64)[:, None].tolist()
+        self.client.resetJointStatesMultiDof(self.id, self.joints, places, [[0.0]] * len(places))
 
     def joint_states(self) -> tuple[Array, Array]:
         """Positions [rad] and velocities [rad/s] of the arm's joints, each of shape (n,)."""
@@ -78,6 +78,20 @@ class RobotBody:
         """Pose of the tool in the world."""
         state = self.client.getLinkState(self.id, self.tool, computeForwardKinematics=True)
         return Pose.from_quaternion(state[4], state[5])
+
+    def joint_axes(self) -> tuple[Array, Array]:
+        """Directions of the joints' axes in the world, and a point on each [m], both of shape (n, 3)."""
+        axes, points = [], []
+        for joint in self.joints:
+            state = self.client.getLinkState(self.id, joint, computeForwardKinematics=True)
+            # PyBullet tells the axis in the frame of the link's centre of mass.
+            axis = (
+                Pose.from_quaternion(state[0], state[1]).rotation
+                @ self.client.getJointInfo(self.id, joint)[13]
+            )
+            axes.append(axis / np.linalg.norm(axis))
+            points.append(state[4])
+        return np.array(axes), np.array(points)
 
     def tool_position(self) -> Array:
         """Position of the tool in the world [m], shape (3,)."""

@@ -1,16 +1,21 @@
 """Whether an arm in a posture would hit itself or something around it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 import pybullet
+from scipy.spatial.transform import Rotation
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from robots.body import RobotBody
+from robots.chain import Chain
+
+_Hit = tuple[int, int, int]
+"""What touches what: number of the other body, link, link of the other body."""
 
 _DEPTH = 0.001  # [m]; less than this, bodies only touch: a part on a table, a cup on a part
 
@@ -23,15 +28,20 @@ class CollisionCheck:
     """
 
     def __init__(
-        self, client: Any, body: RobotBody, obstacles: Sequence[Obstacle], postures: Iterable[Array]
+        self,
+        client: Any,
+        body: RobotBody,
+        chain: Chain,
+        obstacles: Sequence[Obstacle],
+        postures: Iterable[Array],
     ) -> None:
         self._client = client
         self._body = body
+        self._chain = chain
         self._names = {_add(client, obstacle, mass=0.0): obstacle.name for obstacle in obstacles}
         self._part: int | None = None
         self._tool_from_part = Pose.identity()
-        self._allowed: frozenset[tuple[int, int, int]] = frozenset()
-        self._allowed = frozenset().union(*(self._touching(posture) for posture in postures))
+        self._allowed = frozenset[_Hit]().union(*self._touching(np.array([*postures])))
 
     def __enter__(self) -> "CollisionCheck":
         return self
@@ -57,27 +67,33 @@ class CollisionCheck:
 
     def first_hit(self, path: Array) -> str | None:
         """What is hit first along a joint path [rad], shape (M, n), as a sentence; None if nothing is."""
-        for posture in path:
-            hits = self._touching(posture) - self._allowed
+        for touching in self._touching(path):
+            hits = touching - self._allowed
             if hits:
                 return self._told(min(hits))
         return None
 
-    def _touching(self, posture: Array) -> frozenset[tuple[int, int, int]]:
-        """What touches what: number of the other body, link, link of the other body."""
-        self._body.place(posture)
-        if self._part is not None:
-            world_from_centre = self._body.tool_pose() @ self._tool_from_part
-            self._client.resetBasePositionAndOrientation(
-                self._part, world_from_centre.position.tolist(), world_from_centre.quaternion.tolist()
-            )
-        self._client.performCollisionDetection()
-        contacts = list(self._client.getContactPoints(bodyA=self._body.id))
-        if self._part is not None:
-            contacts += self._client.getContactPoints(bodyA=self._part)
-        return frozenset((int(c[2]), int(c[3]), int(c[4])) for c in contacts if c[8] < -_DEPTH)
+    def _touching(self, path: Array) -> Iterator[frozenset[_Hit]]:
+        """What touches what, posture by posture."""
+        places = [None] * len(path) if self._part is None else self._part_places(path)
+        for posture, place in zip(path, places, strict=True):
+            self._body.place(posture)
+            bodies = [self._body.id]
+            if self._part is not None and place is not None:
+                self._client.resetBasePositionAndOrientation(self._part, *place)
+                bodies.append(self._part)
+            self._client.performCollisionDetection()
+            contacts = [contact for body in bodies for contact in self._client.getContactPoints(bodyA=body)]
+            yield frozenset((int(c[2]), int(c[3]), int(c[4])) for c in contacts if c[8] < -_DEPTH)
 
-    def _told(self, hit: tuple[int, int, int]) -> str:
+    def _part_places(self, path: Array) -> Sequence[tuple[list[float], list[float]]]:
+        """Position and quaternion of the part that is held, in each posture."""
+        reach = self._chain.reach(path)
+        positions = reach.positions + reach.rotations @ self._tool_from_part.position
+        turns = Rotation.from_matrix(reach.rotations @ self._tool_from_part.rotation, assume_valid=True)
+        return list(zip(positions.tolist(), turns.as_quat().tolist(), strict=True))
+
+    def _told(self, hit: _Hit) -> str:
         other, link, other_link = hit
         if other == self._body.id:
             return f"the arm's link {link} would hit its link {other_link}"

@@ -1,9 +1,11 @@
 """Forward and inverse kinematics of an arm, in a simulation of its own that has no dynamics."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from types import TracebackType
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from cobot_lfd.arrays import Array
@@ -12,10 +14,11 @@ from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from cobot_lfd.quiet import quiet_output
 from robots.body import RobotBody, connect
+from robots.chain import Chain, Reach
 from robots.collision import CollisionCheck
 from robots.description import RobotDescription
 
-_TOLERANCE = 1e-6  # of position [m] and rotation [rad]; PyBullet's link states carry noise of about 3e-8
+_TOLERANCE = 1e-6  # of position [m] and rotation [rad]
 _SETTLED = (
     1e-4  # [rad]; a step this small means that the posture has settled, so that the joint path is smooth
 )
@@ -23,6 +26,8 @@ _MAX_STEPS = 100
 _POSTURE_GAIN = 0.8  # share of the way to the home posture per step, where the task leaves it free
 _MAX_JOINT_STEP = 0.3  # [rad]; far goals are approached in steps for which the Jacobian still speaks
 _DAMPING = 1e-6  # squared singular value below which a direction of the tool counts as lost
+_ROUNDING = 1e-10  # the same, where all that is wanted is a number to divide by
+_LEAP = 0.3  # [rad]; neighbours of a path that are farther apart lie on different branches
 
 
 class KinematicsError(CobotError):
@@ -46,12 +51,14 @@ class Kinematics:
 
     The steps of the inverse kinematics are Levenberg-Marquardt steps on the pose error, with a motion to the
     home posture in the null space of the Jacobian, so that a redundant arm's elbow stays where it belongs.
-    PyBullet's own solver lets the elbow drift along a path and says nothing when it fails.
+    All poses of a path take their steps at once. PyBullet's own solver lets the elbow drift along a path and
+    says nothing when it fails.
     """
 
     def __init__(self, description: RobotDescription) -> None:
         self._client = connect()
         self._body = RobotBody(self._client, description, self_collision=True)
+        self._chain = Chain.of(self._body)
         self._parked = np.array(description.parked)
         self._home = np.array(description.home)
         self._limits = description.joint_limits
@@ -71,8 +78,12 @@ class Kinematics:
 
     def forward(self, positions: Array) -> Pose:
         """Pose of the tool in the world at joint positions [rad], shape (n,)."""
-        self._body.place(positions)
-        return self._body.tool_pose()
+        reach = self._chain.reach(np.asarray(positions)[None])
+        return Pose(reach.positions[0], reach.rotations[0])
+
+    def tool_positions(self, postures: Array) -> Array:
+        """Where the tool is in the world [m], shape (M, 3), at joint positions [rad], shape (M, n)."""
+        return self._chain.reach(postures).positions
 
     def inverse(self, world_from_tool: Pose, start: Array) -> Array:
         """Joint positions that bring the tool to a pose.
@@ -88,21 +99,23 @@ class Kinematics:
             NotConvergedError: If none is found.
             JointLimitError: If the one found is outside the joint limits.
         """
-        positions = np.array(start, dtype=np.float64)
-        for _ in range(_MAX_STEPS):
-            error = _pose_error(world_from_tool, self.forward(positions))
-            step = self._step(positions, error)
-            if np.abs(error).max() < _TOLERANCE and np.abs(step).max() < _SETTLED:
-                self._require_limits(positions, world_from_tool)
-                return positions
-            positions = positions + step * min(1.0, _MAX_JOINT_STEP / max(np.abs(step).max(), 1e-12))
-        raise NotConvergedError(
-            f"the tool cannot reach {_told(world_from_tool)}: inverse kinematics comes no nearer than "
-            f"{1e3 * np.linalg.norm(error[:3]):.1f} mm, {np.rad2deg(np.linalg.norm(error[3:])):.1f} degrees."
-        )
+        found = self._solve((world_from_tool,), start)
+        if not found.settled[0]:
+            error = found.errors[0]
+            raise NotConvergedError(
+                f"the tool cannot reach {_told(world_from_tool)}: inverse kinematics comes no nearer than "
+                f"{1e3 * np.linalg.norm(error[:3]):.1f} mm, {np.rad2deg(np.linalg.norm(error[3:])):.1f} "
+                "degrees."
+            )
+        positions: Array = found.postures[0]
+        self._require_limits(positions, world_from_tool)
+        return positions
 
     def follow(self, poses: Sequence[Pose], start: Array) -> Array:
-        """Joint positions for a sequence of tool poses, each found from the one before.
+        """Joint positions for a sequence of tool poses.
+
+        All are searched for at once, from the start. Where that fails, or does not give one path, each is
+        found from the one before.
 
         Args:
             poses: Poses of the tool in the world; neighbours are near each other.
@@ -114,6 +127,9 @@ class Kinematics:
         Raises:
             KinematicsError: As for ``inverse``.
         """
+        found = self._solve(poses, start)
+        if found.settled.all() and self._outside(found.postures) is None and _is_one_path(found.postures):
+            return found.postures
         path = []
         for pose in poses:
             start = self.inverse(pose, start)
@@ -122,35 +138,86 @@ class Kinematics:
 
     def collisions(self, obstacles: Sequence[Obstacle]) -> CollisionCheck:
         """A check of postures of this arm among obstacles."""
-        return CollisionCheck(self._client, self._body, obstacles, (self._home, self._parked))
+        return CollisionCheck(self._client, self._body, self._chain, obstacles, (self._home, self._parked))
 
-    def _step(self, positions: Array, error: Array) -> Array:
-        """A damped step on the pose error, and towards home where that is free.
+    def _solve(self, poses: Sequence[Pose], start: Array) -> "_Found":
+        """Search for each pose by itself, all at once; those that have settled wait for the others."""
+        positions = np.array([pose.position for pose in poses])
+        rotations = np.array([pose.rotation for pose in poses])
+        postures = np.tile(np.asarray(start, dtype=np.float64), (len(poses), 1))
+        errors = np.zeros((len(poses), 6))
+        going = np.arange(len(poses))
+        for _ in range(_MAX_STEPS):
+            reach = self._chain.reach(postures[going])
+            errors[going] = error = _pose_errors(positions[going], rotations[going], reach)
+            step = self._steps(postures[going], error, reach.jacobians)
+            largest = np.abs(step).max(axis=1)
+            far = (np.abs(error).max(axis=1) >= _TOLERANCE) | (largest >= _SETTLED)
+            scale = np.minimum(1.0, _MAX_JOINT_STEP / np.maximum(largest, 1e-12))
+            postures[going[far]] += (step * scale[:, None])[far]
+            going = going[far]
+            if not going.size:
+                break
+        settled = np.ones(len(poses), dtype=np.bool_)
+        settled[going] = False
+        return _Found(postures, errors, settled)
+
+    def _steps(self, postures: Array, errors: Array, jacobians: Array) -> Array:
+        """Damped steps on the pose errors, and towards home where that is free, shape (M, n).
 
         The damping grows with the squared error, which keeps the steps sane at the edge of the arm's reach
         (Sugihara, Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, 2011).
         """
-        U, sigma, Vt = np.linalg.svd(self._body.jacobian(positions), full_matrices=False)
-        task = Vt.T @ (sigma / (sigma**2 + _DAMPING + error @ error) * (U.T @ error))
-        posture = _POSTURE_GAIN * (self._home - positions)
-        return np.asarray(task + posture - Vt.T @ (Vt @ posture))
+        transposed = np.swapaxes(jacobians, 1, 2)
+        gram = jacobians @ transposed
+        damping = _DAMPING + (errors**2).sum(axis=1)
+        task = np.linalg.solve(gram + damping[:, None, None] * np.eye(6), errors[..., None])
+        posture = _POSTURE_GAIN * (self._home - postures)[..., None]
+        moved = np.linalg.solve(gram + _ROUNDING * np.eye(6), jacobians @ posture)
+        return np.asarray((posture + transposed @ (task - moved))[..., 0])
+
+    def _outside(self, postures: Array) -> tuple[int, int] | None:
+        """The first posture that is outside the joint limits, and its first joint that is."""
+        outside = (postures < self._limits.position_lower) | (postures > self._limits.position_upper)
+        if not outside.any():
+            return None
+        row, joint = np.argwhere(outside)[0]
+        return int(row), int(joint)
 
     def _require_limits(self, positions: Array, pose: Pose) -> None:
-        outside = np.flatnonzero(
-            (positions < self._limits.position_lower) | (positions > self._limits.position_upper)
-        )
-        if outside.size:
-            i = int(outside[0])
+        outside = self._outside(positions[None])
+        if outside is not None:
+            i = outside[1]
             raise JointLimitError(
                 f"the tool cannot reach {_told(pose)}: joint {i + 1} would be at {positions[i]:.3f} rad, but "
                 f"can take {self._limits.position_lower[i]:.3f} to {self._limits.position_upper[i]:.3f} rad."
             )
 
 
-def _pose_error(wanted: Pose, actual: Pose) -> Array:
-    """Translation [m] and rotation vector [rad] from the actual to the wanted pose, shape (6,)."""
-    rotation = Rotation.from_matrix(wanted.rotation @ actual.rotation.T).as_rotvec()
-    return np.concatenate([wanted.position - actual.position, rotation])
+@dataclass(frozen=True, slots=True, eq=False)
+class _Found:
+    """Where a search has ended.
+
+    Attributes:
+        postures: Joint positions [rad], shape (M, n).
+        errors: What their poses lack, translation [m] and rotation vector [rad], shape (M, 6).
+        settled: Whether each is a solution, shape (M,).
+    """
+
+    postures: Array
+    errors: Array
+    settled: NDArray[np.bool_]
+
+
+def _is_one_path(postures: Array) -> bool:
+    """Whether neighbours lie near each other."""
+    return bool((np.abs(np.diff(postures, axis=0)) < _LEAP).all())
+
+
+def _pose_errors(positions: Array, rotations: Array, reach: Reach) -> Array:
+    """Translation [m] and rotation vector [rad] from the actual to the wanted poses, shape (M, 6)."""
+    turns = Rotation.from_matrix(rotations @ np.swapaxes(reach.rotations, 1, 2), assume_valid=True)
+    return np.hstack([positions - reach.positions, turns.as_rotvec()])
 
 
 def _told(pose: Pose) -> str:

@@ -214,8 +214,7 @@ def _require_free(check: CollisionCheck, *movements: JointTrajectory) -> None:
 def _require_near(kinematics: Kinematics, path: Array, carry: JointTrajectory) -> None:
     """Refuse a motion whose tool leaves the path."""
     joints = carry.positions(np.linspace(0.0, carry.duration, _N_DEVIATIONS))
-    tools = np.array([kinematics.forward(positions).position[:2] for positions in joints])
-    deviation = farthest_from(path, tools)
+    deviation = farthest_from(path, kinematics.tool_positions(joints)[:, :2])
     if deviation > _MOST_DEVIATION:
         raise MotionError(
             f"the planned motion leaves the path by {1e3 * deviation:.2f} mm; "

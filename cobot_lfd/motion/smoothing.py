@@ -34,31 +34,43 @@ def fit_spline(u: Array, x: Array, tolerance: float) -> BSpline:
         x[-1] - x[0]
     )  # Coefficients of the straight way from end to end.
     values = spline_matrix(u, knots, DEGREE)
-    roughness = _roughness(knots)
+    nearness, roughness = (_inner_bands(matrix) for matrix in (values.T @ values, _roughness(knots)))
+    beside = x - values @ line
+    pull = (values.T @ beside)[1:-1]
     best = interpolating
     low, high = 0, len(WEIGHTS)
     while low < high:
         middle = (low + high) // 2
-        detour = _smoothed(values, roughness, x - values @ line, len(u) * WEIGHTS[middle])
-        if detour is not None and np.abs(values @ (line + detour) - x).max() <= tolerance:
+        detour = _smoothed(nearness + len(u) * WEIGHTS[middle] * roughness, pull)
+        if detour is not None and np.abs(values @ detour - beside).max() <= tolerance:
             best, low = BSpline(knots, line + detour, DEGREE), middle + 1
         else:
             high = middle
     return best
 
 
-def _smoothed(values: csr_array, roughness: csr_array, x: Array, weight: float) -> Array | None:
-    """Coefficients of the minimiser for one weight, the first and the last held at zero, shape (M, n)."""
-    normal = (values.T @ values + weight * roughness)[1:-1, 1:-1]
-    banded = np.zeros((DEGREE + 1, normal.shape[0]))
-    for offset in range(DEGREE + 1):
-        diagonal = normal.diagonal(offset)
-        banded[offset, : len(diagonal)] = diagonal
+def _smoothed(normal: Array, pull: Array) -> Array | None:
+    """Coefficients of the minimiser for one weight, the first and the last held at zero, shape (M, n).
+
+    Args:
+        normal: Bands of the matrix of the normal equations.
+        pull: Their right side.
+    """
     try:
-        inner = solveh_banded(banded, (values.T @ x)[1:-1], lower=True)
+        inner = solveh_banded(normal, pull, lower=True)
     except LinAlgError:  # The weight is so large that the points no longer count within rounding.
         return None
     return np.pad(inner, ((1, 1), (0, 0)))
+
+
+def _inner_bands(matrix: csr_array) -> Array:
+    """A symmetric matrix without its first and last rows, as the bands on and below its diagonal."""
+    inner = matrix[1:-1, 1:-1]
+    bands = np.zeros((DEGREE + 1, inner.shape[0]))
+    for offset in range(DEGREE + 1):
+        diagonal = inner.diagonal(offset)
+        bands[offset, : len(diagonal)] = diagonal
+    return bands
 
 
 def _middles(knots: Array) -> Array:

@@ -45,18 +45,20 @@ class TimeLaw:
 
     def __call__(self, times: ArrayLike, order: int = 0) -> Array:
         """The parameter, or its time derivative of the given order (0 to 3), at ``times`` [s]."""
+        return self.derivatives(times)[order]
+
+    def derivatives(self, times: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """The parameter and its first three time derivatives at ``times`` [s], each of their shape."""
         t = np.clip(np.asarray(times, dtype=np.float64), 0.0, self.duration)
         piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.jerks) - 1)
         dt = t - self.times[piece]
-        s, v, a = np.moveaxis(self.states[piece], -1, 0)
+        s, v, a = (column[piece] for column in self.states.T)
         j = self.jerks[piece]
-        return np.asarray(
-            (
-                s + dt * (v + dt * (a / 2 + dt * j / 6)),
-                v + dt * (a + dt * j / 2),
-                a + dt * j,
-                j,
-            )[order]
+        return (
+            np.asarray(s + dt * (v + dt * (a / 2 + dt * j / 6))),
+            np.asarray(v + dt * (a + dt * j / 2)),
+            np.asarray(a + dt * j),
+            np.asarray(j),
         )
 
     def stretched(self, factor: float) -> "TimeLaw":

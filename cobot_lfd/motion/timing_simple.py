@@ -16,43 +16,58 @@ from cobot_lfd.motion.limits import JointLimits
 from cobot_lfd.motion.path import JointPath
 from cobot_lfd.motion.time_law import TimeLaw
 from cobot_lfd.motion.timing_ruckig import rest_to_rest
-from cobot_lfd.motion.timing_stretch import stretch_factor
+from cobot_lfd.motion.timing_stretch import chain_rule, least_stretch
 
 SPEED_SHARES = np.linspace(0.1, 1.0, 10)
 ACCELERATION_SHARES = (1.0, 0.6, 0.3)
+N_PLACES = 1001
+"""Places along the path at which its slope and bends are looked at."""
+
 N_SAMPLES = 500
 """Samples along a law to rank it by; the one that is taken is stretched exactly afterwards."""
+
+STILL = 1e-12
+"""A derivative below which a joint counts as still."""
 
 
 def simple_law(path: JointPath, limits: JointLimits) -> TimeLaw:
     """The fastest of a few time laws with constant limits on s', s'' and s''', from rest to rest."""
-    laws = [rest_to_rest(*candidate) for candidate in _candidates(path, limits)]
-    durations = [law.duration * stretch_factor(path, law, limits, N_SAMPLES) for law in laws]
-    return laws[int(np.argmin(durations))]
+    places = np.linspace(0.0, 1.0, N_PLACES)
+    bends = np.array([path(places, order) for order in (1, 2, 3)])
+    laws = [rest_to_rest(*candidate) for candidate in _candidates(np.abs(bends), limits)]
+    return laws[int(np.argmin(_durations(laws, bends, limits)))]
 
 
-def _candidates(path: JointPath, limits: JointLimits) -> Array:
-    """Limits on s', s'' and s''' that keep the joints within theirs, shape (number of candidates, 3)."""
-    p1, p2, p3 = (np.abs(path(np.linspace(0.0, 1.0, 2001), order)) for order in (1, 2, 3))
+def _durations(laws: list[TimeLaw], bends: Array, limits: JointLimits) -> Array:
+    """How long each law takes [s] once it is stretched; nearly, as each moment counts at the next place."""
+    states = np.array([law.derivatives(np.linspace(0.0, law.duration, N_SAMPLES)) for law in laws])
+    s, *rates = np.moveaxis(states, 1, 0)
+    places = np.rint(np.clip(s, 0.0, 1.0) * (N_PLACES - 1)).astype(np.intp)
+    derivatives = chain_rule(*(bend[places] for bend in bends), *(rate[..., None] for rate in rates))
+    stretch = least_stretch(derivatives, limits).max(axis=1)
+    return np.asarray(stretch * [law.duration for law in laws])
+
+
+def _candidates(bends: Array, limits: JointLimits) -> list[tuple[float, float, float]]:
+    """Limits on s', s'' and s''' that keep the joints within theirs.
+
+    Args:
+        bends: Sizes of the path's first three derivatives at many places, shape (3, number of places, n).
+        limits: What the joints can do.
+    """
+    _, p2, p3 = bends
+    per_p1, per_p2, per_p3 = 1 / np.maximum(bends, STILL)
     fastest = min(
-        _largest(limits.velocity, p1),
-        np.sqrt(_largest(limits.acceleration, p2)),
-        np.cbrt(_largest(limits.jerk, p3)),
+        (limits.velocity * per_p1).min(),
+        np.sqrt((limits.acceleration * per_p2).min()),
+        np.cbrt((limits.jerk * per_p3).min()),
     )
     candidates = []
     for v in fastest * SPEED_SHARES:
-        most = min(
-            _largest(limits.acceleration - p2 * v**2, p1),
-            _largest(limits.jerk - p3 * v**3, 3 * p2 * v),
-        )
+        left = limits.jerk - p3 * v**3
+        most = min(((limits.acceleration - p2 * v**2) * per_p1).min(), (left * per_p2).min() / (3 * v))
         for a in most * np.array(ACCELERATION_SHARES):
-            j = _largest(limits.jerk - p3 * v**3 - 3 * p2 * v * a, p1)
+            j = ((left - 3 * v * a * p2) * per_p1).min()
             if a > 0 and j > 0:
-                candidates.append((v, a, j))
-    return np.array(candidates)
-
-
-def _largest(bound: Array, slope: Array) -> float:
-    """The largest x with ``slope * x <= bound`` everywhere."""
-    moving = slope > 0
-    return float((np.broadcast_to(bound, slope.shape)[moving] / slope[moving]).min(initial=np.inf))
+                candidates.append((float(v), float(a), float(j)))
+    return candidates
