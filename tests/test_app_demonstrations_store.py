@@ -21,6 +21,7 @@ from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.episode_file import UNITS, episode_to_bytes
 from cobot_lfd.app.demonstrations.seal import seal
 from cobot_lfd.app.demonstrations.store import list_episodes, load_demonstrations, load_episode, save_episode
+from cobot_lfd.camera import Camera
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome
 from tests.app_examples import episode
@@ -59,12 +60,23 @@ def test_every_series_of_an_episode_is_written_with_its_unit(tmp_path: Path) -> 
         "seed",
         "verdict",
         "detections",
+        "camera",
     }
     with h5py.File(path) as file:
         assert arrays == {name for name, item in file.items() if "unit" in item.attrs}
         assert file["joint_torques"].attrs["unit"] == "N m"
         assert file["detections/1"].attrs["name"] == "container"
         assert file.attrs["robot"] == "panda"
+
+
+def test_the_camera_comes_back_and_may_be_missing(tmp_path: Path) -> None:
+    camera = Camera.looking_at(
+        [0.5, 0, 1.2], [0.5, 0, 0], up=[1, 0, 0], field_of_view=0.5, width=32, height=24
+    )
+    seen = load_episode(save_episode(tmp_path, replace(episode(), camera=camera))).camera
+    assert seen is not None
+    assert_array_equal(seen.project([0.4, 0.1, 0.02]), camera.project([0.4, 0.1, 0.02]))
+    assert load_episode(save_episode(tmp_path, episode())).camera is None
 
 
 def test_equal_episodes_give_equal_bytes() -> None:

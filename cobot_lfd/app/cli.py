@@ -10,6 +10,7 @@ from cobot_lfd.app.commands.demos import demos
 from cobot_lfd.app.commands.evaluate import evaluate
 from cobot_lfd.app.commands.exit_codes import FAILED, INTERRUPTED
 from cobot_lfd.app.commands.fit import fit
+from cobot_lfd.app.commands.frames import frames
 from cobot_lfd.app.commands.listing import robots, scenes
 from cobot_lfd.app.commands.record import record
 from cobot_lfd.app.commands.replay import replay
@@ -22,6 +23,7 @@ _COMMANDS: dict[str, Callable[..., int]] = {
     "demo": demo,
     "record": record,
     "demos": demos,
+    "frames": frames,
     "fit": fit,
     "run": run,
     "evaluate": evaluate,

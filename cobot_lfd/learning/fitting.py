@@ -59,7 +59,7 @@ def learn(
     data = collect(demonstrations, None if mixtures else N_STEPS)
     if data.scale <= np.finfo(float).eps * max(1.0, float(np.abs(data.paths).max())):
         raise DataError("no demonstration moves; record paths that go somewhere.")
-    findings = _with_known_kinds(identify(data, settings, rng), settings)
+    findings = with_known_kinds(identify(data, settings, rng), settings)
     oriented = [finding.kind is FrameKind.ORIENTED for finding in findings]
     used = select_frames(data, oriented) if settings.select_frames else list(range(len(data.names)))
     kept = data.take(used)
@@ -100,7 +100,7 @@ def _by_criteria(name: str, n_fulfilled: int, n_components: int) -> Finding:
     return Finding(name, kind, Certainty.FOUND, 0.0, reason)
 
 
-def _with_known_kinds(findings: list[Finding], settings: LearningSettings) -> list[Finding]:
+def with_known_kinds(findings: list[Finding], settings: LearningSettings) -> list[Finding]:
     """The findings, overruled where the user knows."""
     names = [finding.name for finding in findings]
     unknown = sorted(set(settings.kinds) - set(names))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array, frozen_array
+from cobot_lfd.camera import Camera
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.detection import Detection
 from cobot_lfd.errors import DataError
@@ -35,6 +36,7 @@ class RecordedEpisode:
         carrying: Whether the sample belongs to the planar carry, shape (M,).
         picture: What the camera saw before the hand touched the arm, RGB uint8, shape (H, W, 3).
         detections: The objects that were found in the picture.
+        camera: The camera that took the picture; None where the recording does not tell.
     """
 
     scene: str
@@ -53,6 +55,7 @@ class RecordedEpisode:
     carrying: NDArray[np.bool_]
     picture: NDArray[np.uint8]
     detections: tuple[Detection, ...]
+    camera: Camera | None = None
 
     def __post_init__(self) -> None:
         """Copy and check."""

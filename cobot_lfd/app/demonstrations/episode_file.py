@@ -7,10 +7,12 @@ import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, seal, unseal
+from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection
 from cobot_lfd.errors import DataError
 from cobot_lfd.frame import Frame
 from cobot_lfd.outcome import Outcome, Verdict
+from cobot_lfd.pose import Pose
 
 TITLE = "cobot-lfd episode"
 VERSION = 1
@@ -34,6 +36,9 @@ UNITS = {
 DETECTION_UNITS = {"position": "m", "angle": "rad", "covariance": "m, m, rad, squared", "contour": "px"}
 """Unit of every array of a detection."""
 
+CAMERA_UNITS = {"matrix": "px", "distortion": "1", "position": "m", "rotation": "1"}
+"""Unit of every array of the camera."""
+
 
 def episode_to_bytes(episode: RecordedEpisode) -> bytes:
     """The whole file of an episode: equal episodes give equal bytes."""
@@ -46,6 +51,8 @@ def episode_to_bytes(episode: RecordedEpisode) -> bytes:
         file.attrs["detail"] = episode.verdict.detail
         for name, unit in UNITS.items():
             _write_array(file, name, getattr(episode, name), unit)
+        if episode.camera is not None:
+            _write_camera(file.create_group("camera"), episode.camera)
         for index, detection in enumerate(episode.detections):
             _write_detection(file.create_group(f"detections/{index}"), detection)
     return seal(buffer.getvalue()[BLOCK_SIZE:], title=TITLE, version=VERSION)
@@ -89,6 +96,30 @@ def _write_detection(group: h5py.Group, detection: Detection) -> None:
         _write_array(group, name, array, DETECTION_UNITS[name])
 
 
+def _write_camera(group: h5py.Group, camera: Camera) -> None:
+    group.attrs["width"] = camera.width
+    group.attrs["height"] = camera.height
+    pose = camera.world_from_camera
+    arrays = {
+        "matrix": camera.matrix,
+        "distortion": camera.distortion,
+        "position": pose.position,
+        "rotation": pose.rotation,
+    }
+    for name, array in arrays.items():
+        _write_array(group, name, array, CAMERA_UNITS[name])
+
+
+def _read_camera(group: h5py.Group) -> Camera:
+    return Camera(
+        int(group.attrs["width"]),
+        int(group.attrs["height"]),
+        group["matrix"][()],
+        Pose(group["position"][()], group["rotation"][()]),
+        group["distortion"][()],
+    )
+
+
 def _read_episode(file: h5py.File) -> RecordedEpisode:
     detections = file.get("detections", {})
     return RecordedEpisode(
@@ -96,6 +127,7 @@ def _read_episode(file: h5py.File) -> RecordedEpisode:
         robot=str(file.attrs["robot"]),
         seed=int(file.attrs["seed"]),
         verdict=Verdict(Outcome.from_kind(str(file.attrs["outcome"])), str(file.attrs["detail"])),
+        camera=_read_camera(file["camera"]) if "camera" in file else None,
         detections=tuple(_read_detection(detections[str(index)]) for index in range(len(detections))),
         **{name: file[name][()] for name in UNITS},
     )

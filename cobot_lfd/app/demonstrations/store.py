@@ -96,8 +96,21 @@ def load_demonstrations(
     Raises:
         DataError: If the folder is missing, a file in it cannot be read, or no episode is kept.
     """
+    return [episode.demonstration() for episode in load_kept(folder, keep=keep)]
+
+
+def load_kept(folder: Path, *, keep: Callable[[RecordedEpisode], bool] = succeeded) -> list[RecordedEpisode]:
+    """The episodes in a folder that can be learnt from, in the order of their numbers.
+
+    Args:
+        folder: Folder of episodes.
+        keep: Which episodes to learn from; by default those that did the task.
+
+    Raises:
+        DataError: If the folder is missing, a file in it cannot be read, or no episode is kept.
+    """
     episodes = [load_episode(path) for path in list_episodes(folder)]
-    kept = [episode.demonstration() for episode in episodes if keep(episode)]
+    kept = [episode for episode in episodes if keep(episode)]
     if not kept:
         raise DataError(
             f"no demonstration in {folder} can be learnt from ({_counted(episodes)}); record more into it."

@@ -58,8 +58,7 @@ def plot_model(
     Raises:
         CobotError: If the file's ending is unknown or it cannot be written.
     """
-    if file.suffix.lower() not in _FILE_KINDS:
-        raise CobotError(f"cannot plot to {file}: its name must end in one of: {', '.join(_FILE_KINDS)}.")
+    require_plot_file(file)
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 7.0) if demonstrations else (7.5, 7.0), layout="constrained")
@@ -72,7 +71,7 @@ def plot_model(
     right = figure.add_subfigure(columns[1] if demonstrations else columns[:])
     _plot_generated(right.subplots(), frames, path, colours)
     right.legend(loc="outside lower center", ncols=3 if demonstrations else 2, frameon=False)
-    return _save(figure, file)
+    return save_figure(figure, file)
 
 
 def _plot_demonstrations(
@@ -168,7 +167,22 @@ def _finish(axes: Axes, title: str) -> None:
     axes.grid(visible=True, linewidth=0.4, alpha=0.5)
 
 
-def _save(figure: Figure, file: Path) -> Path:
+def require_plot_file(file: Path) -> None:
+    """Refuse a file that no plot can be written to.
+
+    Raises:
+        CobotError: If its ending is unknown.
+    """
+    if file.suffix.lower() not in _FILE_KINDS:
+        raise CobotError(f"cannot plot to {file}: its name must end in one of: {', '.join(_FILE_KINDS)}.")
+
+
+def save_figure(figure: Figure, file: Path) -> Path:
+    """Write a figure, whole or not at all, and return its file.
+
+    Raises:
+        CobotError: If it cannot be written.
+    """
     buffer = io.BytesIO()
     figure.savefig(buffer, format=file.suffix[1:].lower(), dpi=120)
     write_file(file, buffer.getvalue())

@@ -41,7 +41,9 @@ def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpiso
         recorder = Recorder()
         lead(world, arm, _scripted_hand(scene, world, arm, seed), recorder)
         verdict = judge(world, arm, view)
-        return recorder.episode(scene_name, robot_name, seed, verdict, view.picture, view.detections)
+        return recorder.episode(
+            scene_name, robot_name, seed, verdict, view.picture, view.detections, scene.camera.camera
+        )
 
 
 def lead(

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.recording.hand import HandAction
+from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Verdict
@@ -35,6 +36,7 @@ class Recorder:
         verdict: Verdict,
         picture: NDArray[np.uint8],
         detections: tuple[Detection, ...],
+        camera: Camera,
     ) -> RecordedEpisode:
         """The samples as an episode that ended with a verdict.
 
@@ -63,4 +65,5 @@ class Recorder:
             carrying=np.array([action.carrying for action in actions], dtype=np.bool_),
             picture=picture,
             detections=detections,
+            camera=camera,
         )

@@ -272,7 +272,13 @@ class Session:
             self._recorder = None
             return
         recorded = recorder.episode(
-            self._scene_name, self._robot_name, self.stage.seed, verdict, view.picture, view.detections
+            self._scene_name,
+            self._robot_name,
+            self.stage.seed,
+            verdict,
+            view.picture,
+            view.detections,
+            self.stage.scene.camera.camera,
         )
         episode = replace(recorded, carrying=trimmed_carry(recorded.carrying, recorded.tool_positions))
         path = save_episode(self._folder, episode)

@@ -1,0 +1,181 @@
+"""What was found out about the candidate frames, as a picture: a panel per demonstration, and the figures.
+
+Matplotlib is imported when something is drawn, because it takes longer to import than all the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.discovery.discover import Decision, Discovery, Fate
+from cobot_lfd.app.pictures.plot import FRAME_COLOURS, require_plot_file, save_figure
+from cobot_lfd.camera import Camera
+from cobot_lfd.detection import Detection
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_N_COLUMNS = 3
+_DROPPED = "#555555"
+_PATH = "#111111"
+_MARGIN = 14  # [px] between an outline and its name
+
+
+def draw_discovery(
+    discovery: Discovery, episodes: Sequence[RecordedEpisode], camera: Camera, file: Path
+) -> Path:
+    """Draw what was found.
+
+    Args:
+        discovery: What was found.
+        episodes: The demonstrations in which it was found.
+        camera: Their camera.
+        file: Where the picture goes; its ending chooses PNG, SVG or PDF.
+
+    Raises:
+        CobotError: If the file's ending is unknown or it cannot be written.
+    """
+    require_plot_file(file)
+    from matplotlib.figure import Figure
+
+    n_rows = -(-len(episodes) // _N_COLUMNS)
+    figure = Figure(
+        figsize=(13.0, 3.45 * n_rows + 0.42 * len(discovery.decisions) + 1.2), layout="constrained"
+    )
+    heights = (3.45 * n_rows, 0.42 * len(discovery.decisions) + 1.2)
+    grid = figure.add_gridspec(2, 1, height_ratios=heights)
+    above, below = (figure.add_subfigure(grid[row]) for row in range(2))
+    colours = _colours(discovery)
+    panels = above.subplots(n_rows, _N_COLUMNS, squeeze=False).ravel()
+    for n, (axes, episode) in enumerate(zip(panels, episodes, strict=False)):
+        _draw_demonstration(axes, discovery, n, episode, camera, colours)
+    for axes in panels[len(episodes) :]:
+        axes.axis("off")
+    _draw_figures(below.subplots(), discovery, colours)
+    return save_figure(figure, file)
+
+
+def _colours(discovery: Discovery) -> dict[str, str]:
+    """A colour for each kept frame and what was merged with it; grey for what was dropped."""
+    kept = dict(zip(discovery.kept, FRAME_COLOURS * len(discovery.kept), strict=False))
+    colours: dict[str, str] = {}
+    for motion in discovery.candidates.motions:
+        colours |= dict.fromkeys(motion.members, kept.get(motion.members[0], _DROPPED))
+    return colours
+
+
+def _draw_demonstration(
+    axes: Axes,
+    discovery: Discovery,
+    n: int,
+    episode: RecordedEpisode,
+    camera: Camera,
+    colours: Mapping[str, str],
+) -> None:
+    """One picture with its candidates and the way that the tool went."""
+    axes.imshow(episode.picture)
+    above_table = episode.tool_positions[episode.carrying] * [1.0, 1.0, 0.0]
+    carried = camera.project(above_table)
+    axes.plot(*carried.T, color="white", linewidth=3.4)
+    axes.plot(*carried.T, color=_PATH, linewidth=1.6)
+    axes.plot(*carried[0], "o", color=_PATH, markeredgecolor="white", markersize=5)
+    for decision in discovery.decisions:
+        seen = discovery.candidates.tracks[decision.name].sightings[n]
+        if isinstance(seen, Detection) and len(seen.contour):
+            _draw_candidate(axes, decision, seen, discovery, camera, colours[decision.name])
+    axes.set(
+        title=f"demonstration {n + 1} (seed {episode.seed}): "
+        f"{1e3 * discovery.choice.errors[n]:.0f} mm when left out",
+        xlim=(-0.5, camera.width - 0.5),
+        ylim=(camera.height - 0.5, -0.5),
+        xticks=[],
+        yticks=[],
+    )
+    axes.title.set_fontsize(10)
+
+
+def _draw_candidate(
+    axes: Axes, decision: Decision, seen: Detection, discovery: Discovery, camera: Camera, colour: str
+) -> None:
+    from matplotlib.patheffects import withStroke
+
+    kept = decision.fate is Fate.KEPT
+    style = {Fate.KEPT: "-", Fate.MERGED: "--", Fate.DROPPED: ":"}[decision.fate]
+    outline = np.vstack([seen.contour, seen.contour[:1]])
+    rim = [withStroke(linewidth=4.0 if kept else 2.6, foreground="white")]
+    axes.plot(*outline.T, style, color=colour, linewidth=2.2 if kept else 1.2, path_effects=rim)
+    model = discovery.candidates.models[decision.name]
+    if kept:
+        length = 0.7 * float(np.linalg.norm(model.outline, axis=1).max())
+        for axis, width in ((0, 2.5), (1, 1.2)):
+            ends = np.stack(
+                [seen.frame.position, seen.frame.position + length * seen.frame.rotation[:, axis]]
+            )
+            drawn = camera.project(np.column_stack([ends, np.full(2, model.z)]))
+            axes.plot(*drawn.T, color=colour, linewidth=width, path_effects=rim)
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    below = high[1] + 2 * _MARGIN < camera.height
+    axes.text(
+        float(np.clip(0.5 * (low[0] + high[0]), 40, camera.width - 40)),
+        float(high[1] + _MARGIN if below else low[1] - _MARGIN),
+        decision.name if kept else f"{decision.name} ({decision.fate.value})",
+        color=colour,
+        fontsize=10 if kept else 8,
+        fontweight="bold" if kept else "normal",
+        horizontalalignment="center",
+        verticalalignment="center",
+        path_effects=[withStroke(linewidth=2.5, foreground="white")],
+    )
+
+
+def _draw_figures(axes: Axes, discovery: Discovery, colours: Mapping[str, str]) -> None:
+    """For each candidate how left-out demonstrations are predicted with it and without it."""
+    decisions = discovery.decisions
+    labelled = set()
+    for row, decision in enumerate(decisions):
+        verdict = discovery.choice.verdicts.get(decision.name)
+        comparison = verdict.comparison if verdict is not None else None
+        colour = colours[decision.name]
+        if comparison is None:
+            axes.text(0.02, row, _short(decision), color=colour, fontsize=9, verticalalignment="center",
+                      transform=axes.get_yaxis_transform())  # fmt: skip
+            continue
+        for errors, offset, marker in ((comparison.without, -0.14, "x"), (comparison.with_it, 0.14, "o")):
+            label = "without the frame" if marker == "x" else "with it"
+            axes.plot(
+                1e3 * errors,
+                np.full(len(errors), row + offset),
+                marker,
+                color=colour,
+                alpha=0.55,
+                markersize=5,
+                label=None if label in labelled else f"{label}, each left-out demonstration",
+            )
+            labelled.add(label)
+            axes.plot(
+                1e3 * errors.mean(), row + offset, "|", color=colour, markersize=13, markeredgewidth=2.2
+            )
+    axes.set(
+        title="distance of each left-out demonstration from what the others predict; the bars are the means",
+        xlabel="[mm]",
+        xscale="log",
+        yticks=range(len(decisions)),
+        yticklabels=[f"{item.name}: {item.fate.value}" for item in decisions],
+        ylim=(len(decisions) - 0.5, -0.6),
+    )
+    axes.title.set_fontsize(10)
+    for tick, decision in zip(axes.get_yticklabels(), decisions, strict=True):
+        tick.set_color(colours[decision.name])
+        tick.set_fontweight("bold" if decision.fate is Fate.KEPT else "normal")
+    axes.grid(visible=True, axis="x", which="both", linewidth=0.4, alpha=0.5)
+    if labelled:
+        axes.legend(loc="lower right", fontsize=8)
+
+
+def _short(decision: Decision) -> str:
+    return decision.reason if len(decision.reason) < 130 else decision.reason[:127] + "..."
