@@ -10,5 +10,7 @@ from perception.calibration import calibrate_lens as calibrate_lens
 from perception.detector import Detector as Detector
 from perception.detector import detect as detect
 from perception.detector import detector_for as detector_for
+from perception.feature_detector import FeatureDetector as FeatureDetector
 from perception.markers import MarkerDetector as MarkerDetector
+from perception.reference import learn_appearance as learn_appearance
 from perception.shape_detector import ShapeDetector as ShapeDetector

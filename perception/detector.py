@@ -3,9 +3,11 @@
 from collections.abc import Iterable
 from typing import Protocol
 
+from cobot_lfd.appearance import Appearance
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, DetectorKind, NotSeen, ObjectModel
 from cobot_lfd.marker import Marker
+from perception.feature_detector import FeatureDetector
 from perception.markers import MarkerDetector
 from perception.picture import Picture
 from perception.shape_detector import ShapeDetector
@@ -41,13 +43,22 @@ def detector_for(kind: DetectorKind, models: Iterable[ObjectModel]) -> Detector:
         case "marker":
             return MarkerDetector(tuple(_marker(model) for model in models))
         case "features":
-            raise ValueError("there is no detector by features yet; use 'shape' or 'marker'.")
+            return FeatureDetector(tuple(_appearance(model) for model in models))
 
 
 def _marker(model: ObjectModel) -> Marker:
     if model.marker is None:
         raise ValueError(f"'{model.name}' is to be found by a marker, but it has none; give its model one.")
     return model.marker
+
+
+def _appearance(model: ObjectModel) -> Appearance:
+    if model.appearance is None:
+        raise ValueError(
+            f"'{model.name}' is to be found by features, but nobody has seen it; give its model an "
+            "appearance (perception.learn_appearance)."
+        )
+    return model.appearance
 
 
 def detect(

@@ -11,6 +11,7 @@ from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
 from cobot_lfd.marker import Marker
 from perception.picture import Picture, check_picture
+from perception.rigid import on_plane, rigid_fit
 
 _DICTIONARY = cv2.aruco.DICT_4X4_50
 _CORNER_NOISE = 0.25  # Standard deviation of a corner's place at the least [px]; found by measuring.
@@ -54,7 +55,7 @@ def _squares(picture: Picture) -> dict[int, Array]:
 
 
 def _detection(camera: Camera, marker: Marker, pixels: Array) -> Detection:
-    frame = _rigid_fit(marker.corners, camera.to_plane(pixels, marker.z))
+    frame = rigid_fit(marker.corners, camera.to_plane(pixels, marker.z))
     return Detection(
         name=marker.name,
         frame=frame,
@@ -63,14 +64,6 @@ def _detection(camera: Camera, marker: Marker, pixels: Array) -> Detection:
         confidence=1.0,
         contour=pixels,
     )
-
-
-def _rigid_fit(local: Array, world: Array) -> Frame:
-    """The frame that takes points to where they were seen, by least squares."""
-    a, b = local - local.mean(axis=0), world - world.mean(axis=0)
-    angle = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
-    turn = Frame(np.zeros(2), float(angle))
-    return Frame(world.mean(axis=0) - turn.apply(local.mean(axis=0)), turn.angle)
 
 
 def _covariance(camera: Camera, marker: Marker, frame: Frame, pixels: Array) -> Array:
@@ -86,4 +79,4 @@ def _covariance(camera: Camera, marker: Marker, frame: Frame, pixels: Array) -> 
 
 
 def _project(camera: Camera, marker: Marker, frame: Frame) -> Array:
-    return camera.project(np.column_stack([frame.apply(marker.corners), np.full(4, marker.z)]))
+    return camera.project(on_plane(frame.apply(marker.corners), marker.z))

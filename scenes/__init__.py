@@ -12,6 +12,9 @@ from scenes.obstacles import obstacles as obstacles
 from scenes.outlines import object_model as object_model
 from scenes.outlines import object_models as object_models
 from scenes.placement import draw_placements as draw_placements
+from scenes.portrait import Portrait as Portrait
+from scenes.portrait import take_portrait as take_portrait
+from scenes.rendering import Renderer as Renderer
 from scenes.success import check_success as check_success
 from scenes.task import Task as Task
 from scenes.task import YawRule as YawRule

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import map_coordinates, uniform_filter
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
@@ -36,29 +37,43 @@ class Print:
 
 
 def draw_prints(
-    picture: NDArray[np.uint8], camera: Camera, prints: Sequence[Print], samples: int, depth: Array
+    picture: NDArray[np.uint8],
+    camera: Camera,
+    prints: Sequence[Print],
+    depth: Array,
+    *,
+    shift: ArrayLike = (0.0, 0.0),
+    width: float = 1.0,
 ) -> NDArray[np.uint8]:
-    """The picture with prints in it, each pixel the mean of ``samples`` x ``samples`` rays.
+    """The picture with prints in it, one ray for each pixel.
 
     Args:
         picture: Red, green, blue, shape (height, width, 3).
         camera: The camera that took it.
         prints: What is drawn.
-        samples: Rays along each side of a pixel.
         depth: How far from the camera, along its axis, what is in the picture is [m], shape (height, width).
+        shift: Where in a pixel its ray goes through, measured from the pixel's centre [px], shape (2,).
+        width: Side of the square of a print that a ray takes the mean of [px].
     """
     result = picture.copy()
     for each in prints:
         rows, columns = _reach(camera, each)
         part = result[rows, columns]
-        if not part.size:
-            continue
-        v, u = np.mgrid[rows, columns]
-        shifts = (np.arange(samples) + 0.5) / samples - 0.5
-        pixels = [np.stack([u + x, v + y], axis=-1) for x in shifts for y in shifts]
-        seen = [_seen(each, camera, place, part, depth[rows, columns]) for place in pixels]
-        part[:] = np.rint(np.clip(np.mean(seen, axis=0), 0, 255))
+        if part.size:
+            v, u = np.mgrid[rows, columns]
+            pixels = np.stack([u, v], axis=-1) + np.asarray(shift)
+            image = _smoothed(each, camera, width)
+            part[:] = _seen(each, image, camera, pixels, part, depth[rows, columns])
     return result
+
+
+def _smoothed(each: Print, camera: Camera, width: float) -> Array:
+    """A print's image, each dot the mean of what a ray takes in, shape (rows, columns, 3 or 1)."""
+    away = np.linalg.norm(each.world_from_print.position - camera.world_from_camera.position)
+    n_dots = width * away / camera.matrix[0, 0] * each.image.shape[1] / each.width
+    image = each.image.astype(np.float64).reshape(*each.image.shape[:2], -1)
+    size = 2 * round((n_dots - 1) / 2) + 1  # odd, so that nothing moves
+    return np.asarray(uniform_filter(image, (size, size, 0), mode="nearest")) if size > 1 else image
 
 
 def _reach(camera: Camera, each: Print) -> tuple[slice, slice]:
@@ -74,30 +89,26 @@ def _reach(camera: Camera, each: Print) -> tuple[slice, slice]:
     return slice(low[1], high[1]), slice(low[0], high[0])
 
 
-def _seen(each: Print, camera: Camera, pixels: Array, behind: NDArray[np.uint8], depth: Array) -> Array:
+def _seen(
+    each: Print, image: Array, camera: Camera, pixels: Array, behind: NDArray[np.uint8], depth: Array
+) -> Array:
     """What is seen along rays through places in the picture, shape (h, w, 3)."""
     print_from_camera = each.world_from_print.inverse() @ camera.world_from_camera
     rays = camera.to_rays(pixels)
     ahead = np.concatenate([rays, np.ones((*rays.shape[:-1], 1))], axis=-1) @ print_from_camera.rotation.T
     start = print_from_camera.position
     distance = -start[2] / ahead[..., 2]
-    place = start[:2] + ahead[..., :2] * distance[..., None]
-    n_rows, n_columns = each.image.shape[:2]
-    column = np.floor((place[..., 0] / each.width + 0.5) * n_columns).astype(int)
-    row = np.floor((0.5 - place[..., 1] / each.height) * n_rows).astype(int)
-    hit = (
-        (column >= 0)
-        & (column < n_columns)
-        & (row >= 0)
-        & (row < n_rows)
-        & (start[2] > 0.0)
-        & (distance > 0.0)
+    x, y = np.moveaxis(start[:2] + ahead[..., :2] * distance[..., None], -1, 0)
+    hit = (np.abs(x) <= each.width / 2) & (np.abs(y) <= each.height / 2) & (start[2] > 0.0) & (distance > 0.0)
+    hit &= (distance < depth + _TOUCHING) if each.on is None else (np.abs(distance - depth) < _TOUCHING)
+    n_rows, n_columns = image.shape[:2]
+    places = [(0.5 - y / each.height) * n_rows - 0.5, (x / each.width + 0.5) * n_columns - 0.5]
+    shade = np.stack(
+        [map_coordinates(channel, places, order=1, mode="nearest") for channel in np.moveaxis(image, -1, 0)],
+        axis=-1,
     )
-    shade = each.image[np.clip(row, 0, n_rows - 1), np.clip(column, 0, n_columns - 1)]
     if each.on is None:
-        hit &= distance < depth + _TOUCHING
-        ink = 255 * _DARK + (shade if shade.ndim == 3 else shade[..., None]) * (_BRIGHT - _DARK)
+        ink = 255 * _DARK + shade * (_BRIGHT - _DARK)
     else:
-        hit &= np.abs(distance - depth) < _TOUCHING
-        ink = behind / (255 * np.array(each.on)) * (shade if shade.ndim == 3 else shade[..., None])
-    return np.where(hit[..., None], ink, behind)
+        ink = behind / (255 * np.array(each.on)) * shade
+    return np.where(hit[..., None], np.rint(np.clip(ink, 0, 255)), behind)

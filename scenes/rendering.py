@@ -32,7 +32,6 @@ _GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
 
 _LARGEST_EGL = (1024, 768)  # Larger pictures it only magnifies [px].
 
-_PRINT_SAMPLES = 3  # Rays along each side of a pixel that shows a print.
 _NEAR, _FAR = 0.05, 10.0  # What is nearer to or farther from the camera is not drawn [m].
 
 
@@ -104,11 +103,12 @@ def take_picture(
             f"the renderer 'egl' draws at most {_LARGEST_EGL[0]} x {_LARGEST_EGL[1]} px; a picture of "
             f"{ideal.width} x {ideal.height} px is needed. Use the renderer 'tiny', or a smaller picture."
         )
-    shifts = sample_pattern(seen.samples) + _GRID_OFFSET[renderer]
-    shots = [_shoot(client, ideal, shift, light, renderer) for shift in shifts]
-    colours = [shot.colours for shot in shots]
-    picture = colours[0] if len(shots) == 1 else np.rint(np.mean(colours, axis=0)).astype(np.uint8)
-    picture = draw_prints(picture, ideal, prints, _PRINT_SAMPLES, shots[0].depth)
+    shots = []
+    for shift in sample_pattern(seen.samples):
+        shot = _shoot(client, ideal, shift + _GRID_OFFSET[renderer], light, renderer)
+        width = seen.samples**-0.5
+        shots.append(draw_prints(shot.colours, ideal, prints, shot.depth, shift=shift, width=width))
+    picture = shots[0] if len(shots) == 1 else np.rint(np.mean(shots, axis=0)).astype(np.uint8)
     if seen.lens == Lens() and seen.sensor == Sensor():
         return picture
     return on_sensor(through_lens(picture, ideal, camera, seen.lens), seen.sensor, generator)

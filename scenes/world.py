@@ -30,6 +30,7 @@ class World:
         client: The physics client; a robot adds itself to it.
         bodies: Name of an object to its body's number in the client.
         table: The table's body number in the client.
+        renderer: What draws its pictures.
         watch: What has been noticed since the world was built. Only for the success check.
     """
 
@@ -45,7 +46,7 @@ class World:
         with quiet_output():
             self.client = BulletClient(pybullet.DIRECT)
             self._plugin = load_renderer(self.client, renderer)
-        self._renderer: Renderer = renderer
+        self.renderer: Renderer = renderer
         self._n_steps = 0
         self._sensor_noise = np.random.default_rng([seed, 1])
         _set_up_physics(self.client, description)
@@ -111,7 +112,7 @@ class World:
             for face in self._printed_faces
         ]
         prints = [*on_objects, *prints]
-        picture = take_picture(self.client, camera, light, self._renderer, self._sensor_noise, prints)
+        picture = take_picture(self.client, camera, light, self.renderer, self._sensor_noise, prints)
         return np.zeros_like(picture) if covered else picture
 
     def place(self, name: str, frame: Frame) -> None:

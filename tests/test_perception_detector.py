@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 import scenes
+from cobot_lfd.app.perceive import perceive
 from cobot_lfd.detection import Detection, DetectorKind, ObjectModel
 from cobot_lfd.errors import DescriptionError
 from cobot_lfd.frame import wrap_angle
 from perception import ShapeDetector, detect, detector_for
-from scenes import World, load_scene, object_models
+from scenes import Renderer, World, load_scene, object_models
+from tests.renderers import RENDERERS
 
 CONTENT = (Path(scenes.__file__).parent / "pick_and_place.toml").read_text(encoding="utf-8")
 CAMERA = load_scene("pick_and_place").camera.camera
@@ -51,6 +53,25 @@ def test_each_object_of_a_scene_is_found_by_its_own_detector(tmp_path: Path, see
     assert np.linalg.norm(container.frame.position - truth["container"].position) < 1e-3
 
 
+@pytest.mark.simulator
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_an_object_with_a_print_is_found_by_what_it_looks_like(tmp_path: Path, renderer: Renderer) -> None:
+    """The pipeline looks at it once, alone on the table, and knows it from then on."""
+    file = written(tmp_path, print='{ kind = "circuit_board", seed = 3 }')
+    larger = file.read_text(encoding="utf-8").replace(
+        "size = [0.04, 0.04, 0.04]", "size = [0.08, 0.05, 0.02]"
+    )
+    file.write_text(larger, encoding="utf-8")
+    scene = load_scene(file)
+    for seed in range(2):
+        with World(scene, seed, renderer=renderer) as world:
+            view, truth = perceive(world), world.true_frames()
+        assert not view.missing
+        for name, frame in view.frames.items():
+            assert np.linalg.norm(frame.position - truth[name].position) < 1e-3
+        assert abs(wrap_angle(view.frames["cube"].angle - truth["cube"].angle)) < np.deg2rad(0.5)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -81,12 +102,17 @@ def test_what_is_no_box_cannot_be_found_by_a_print(tmp_path: Path) -> None:
         load_scene(file)
 
 
+def test_a_model_that_nobody_has_seen_is_told() -> None:
+    with pytest.raises(ValueError, match=r"'cube' is to be found by features, but nobody has seen it"):
+        detector_for("features", [replace(MODEL, found_by="features")])
+
+
 def test_a_model_without_what_its_detector_needs_is_told() -> None:
     model: ObjectModel = replace(MODEL, found_by="marker")
     with pytest.raises(ValueError, match="'cube' is to be found by a marker, but it has none"):
         detector_for("marker", [model])
 
 
-@pytest.mark.parametrize("kind", ["shape", "marker"])
+@pytest.mark.parametrize("kind", ["shape", "marker", "features"])
 def test_who_looks_for_nothing_finds_nothing(kind: DetectorKind) -> None:
     assert detector_for(kind, []).detect(np.full((480, 640, 3), 180, np.uint8), CAMERA) == ()

@@ -31,7 +31,7 @@ def picture_of(frames: dict[str, Frame]) -> Picture:
         prints.append(
             Print(image, size, size, Pose.from_rpy([*frame.position, marker.z], [0, 0, frame.angle]))
         )
-    return draw_prints(TABLE, CAMERA, prints, 3, np.full(TABLE.shape[:2], 1.2))
+    return draw_prints(TABLE, CAMERA, prints, np.full(TABLE.shape[:2], 1.2))
 
 
 def frames_of(seed: int) -> dict[str, Frame]:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cobot_lfd.app.sought import sought
 from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
 from perception import detect
-from scenes import SceneDescription, World, object_model, object_models
+from scenes import SceneDescription, World, object_model
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +50,7 @@ def perceive(world: World, *, covered: bool = False) -> View:
     """
     scene = world.description
     picture = world.take_picture(covered=covered)
-    found = detect(picture, scene.camera.camera, object_models(scene))
+    found = detect(picture, scene.camera.camera, sought(scene, world.renderer))
     task_relevant = [item for item in found if scene.objects[item.name].frame]
     return View(
         picture,

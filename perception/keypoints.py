@@ -1,0 +1,87 @@
+"""Points of a picture that look the same from wherever they are seen: SIFT's, or ORB's, which are faster."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from cobot_lfd.arrays import Array
+
+FeatureKind = Literal["sift", "orb"]
+"""What describes a point: gradients in its surroundings, or comparisons of brightness."""
+
+# How many times a picture is magnified before points are looked for: small objects have only
+# details of a few pixels. SIFT magnifies by itself.
+_MAGNIFIED: dict[FeatureKind, float] = {"sift": 1.25, "orb": 2.0}
+_SIFT: dict[str, Any] = {"contrastThreshold": 0.02, "edgeThreshold": 20.0, "sigma": 1.0}
+_ORB: dict[str, Any] = {
+    "nfeatures": 2000,
+    "scaleFactor": 1.2,
+    "nlevels": 6,
+    "fastThreshold": 8,
+    "edgeThreshold": 16,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keypoints:
+    """Points of a picture.
+
+    Attributes:
+        places: Column and row [px], shape (n, 2).
+        directions: Unit vectors in the picture that turn with it, shape (n, 2).
+        descriptors: What they look like, one row each, shape (n, m).
+    """
+
+    places: Array
+    directions: Array
+    descriptors: NDArray[Any]
+
+
+def find_keypoints(
+    grey: NDArray[np.uint8], kind: FeatureKind, parts: Iterable[tuple[slice, slice]] | None = None
+) -> Keypoints:
+    """The points of a grey picture, or of parts of it, given by their rows and columns."""
+    whole = (slice(0, grey.shape[0]), slice(0, grey.shape[1]))
+    found = [_find_in(grey, part, kind) for part in ([whole] if parts is None else parts)]
+    some = [each for each in found if len(each.places)]
+    if not some:
+        return Keypoints(np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 1), np.float32))
+    return Keypoints(
+        np.vstack([each.places for each in some]),
+        np.vstack([each.directions for each in some]),
+        np.vstack([each.descriptors for each in some]),
+    )
+
+
+def _find_in(grey: NDArray[np.uint8], part: tuple[slice, slice], kind: FeatureKind) -> Keypoints:
+    rows, columns = part
+    magnified = _MAGNIFIED[kind]
+    large = cv2.resize(grey[rows, columns], None, fx=magnified, fy=magnified, interpolation=cv2.INTER_CUBIC)
+    finder: Any = cv2.SIFT.create(**_SIFT) if kind == "sift" else cv2.ORB.create(**_ORB)
+    points, descriptors = finder.detectAndCompute(large, None)
+    places = np.array([point.pt for point in points], dtype=np.float64).reshape(-1, 2)
+    angles = np.deg2rad([point.angle for point in points])
+    return Keypoints(
+        (places + 0.5) / magnified - 0.5 + [columns.start, rows.start],
+        np.column_stack([np.cos(angles), np.sin(angles)]),
+        descriptors if descriptors is not None else np.empty((0, 1)),
+    )
+
+
+def nearest(
+    descriptors: NDArray[Any], among: NDArray[Any], kind: FeatureKind
+) -> tuple[NDArray[np.int_], Array]:
+    """For each descriptor the nearest among others, and the ratio of its distance to the second's, (n,) each.
+
+    The ratio is far below 1 where only one is like it.
+    """
+    if not len(descriptors) or len(among) < 2:
+        return np.zeros(len(descriptors), dtype=int), np.ones(len(descriptors))
+    matcher = cv2.BFMatcher(cv2.NORM_L2 if kind == "sift" else cv2.NORM_HAMMING)
+    pairs = matcher.knnMatch(descriptors, among, k=2)
+    ratios = np.array([first.distance / max(second.distance, 1e-9) for first, second in pairs])
+    return np.array([first.trainIdx for first, _ in pairs]), ratios
