@@ -41,7 +41,7 @@ class Pose:
     @classmethod
     def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> "Pose":
         """From a position [m] and a quaternion in the order x, y, z, w."""
-        return cls(np.asarray(position, dtype=np.float64), Rotation.from_quat(np.asarray(xyzw)).as_matrix())
+        return cls(np.asarray(position, dtype=np.float64), _matrix(np.asarray(xyzw, dtype=np.float64)))
 
     @classmethod
     def from_rpy(cls, position: ArrayLike, rpy: ArrayLike) -> "Pose":
@@ -70,6 +70,22 @@ class Pose:
     def angle_to(self, other: "Pose") -> float:
         """Angle of the rotation between the two [rad]."""
         return float(Rotation.from_matrix(self.rotation.T @ other.rotation).magnitude())
+
+
+def _matrix(xyzw: Array) -> Array:
+    """The rotation of a quaternion of any length but 0; poses are read so often that it is quick."""
+    x, y, z, w = xyzw.tolist()
+    squared_length = x * x + y * y + z * z + w * w
+    if squared_length == 0.0:
+        raise ValueError("xyzw is a quaternion of length 0, which is no rotation.")
+    twice = 2.0 / squared_length
+    return np.array(
+        [
+            [1.0 - twice * (y * y + z * z), twice * (x * y - w * z), twice * (x * z + w * y)],
+            [twice * (x * y + w * z), 1.0 - twice * (x * x + z * z), twice * (y * z - w * x)],
+            [twice * (x * z - w * y), twice * (y * z + w * x), 1.0 - twice * (x * x + y * y)],
+        ]
+    )
 
 
 def _is_rotation(matrix: Array) -> bool:

@@ -1,5 +1,6 @@
 """The arm in the simulation: led by hand, or following a trajectory."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,15 +52,28 @@ class Arm:
         body: Its joints and links in the simulation.
     """
 
-    def __init__(self, client: Any, description: RobotDescription) -> None:
+    def __init__(self, client: Any, description: RobotDescription, *, visible: bool = True) -> None:
+        """Add it, parked.
+
+        Args:
+            client: The simulation.
+            description: What is known of the robot.
+            visible: Whether it is in pictures; they and the loading take less time without it.
+        """
         self.description = description
-        self.body = RobotBody(client, description)
+        self.body = RobotBody(client, description, visible=visible)
         self._client = client
+        self._drive_motors = client.setJointMotorControlArray  # looked up once: it is called at every step
+        self._motors = {
+            "forces": list(description.limits.torque),
+            "positionGains": [_POSITION_GAIN] * len(description.joints),
+            "velocityGains": [_VELOCITY_GAIN] * len(description.joints),
+        }
         self._torques = np.zeros(len(description.joints))
         self._led = False
         self.body.place(np.array(description.parked))
         self._grip = make_grip(client, self.body, description.gripper)
-        self.follow(np.array(description.parked), np.zeros(len(description.joints)))
+        self.follow(description.parked, [0.0] * len(description.joints))
         self.grip(description.gripper.maximum_opening)
 
     def state(self) -> ArmState:
@@ -94,17 +108,15 @@ class Arm:
         self._grip.update()
         self._led = True
 
-    def follow(self, positions: Array, velocities: Array) -> None:
-        """Drive the joints to positions [rad] at velocities [rad/s], each of shape (n,), in the next step."""
-        self._client.setJointMotorControlArray(
+    def follow(self, positions: Sequence[float] | Array, velocities: Sequence[float] | Array) -> None:
+        """Drive the joints to positions [rad] at velocities [rad/s], n of each, in the next step."""
+        self._drive_motors(
             self.body.id,
             self.body.joints,
             pybullet.POSITION_CONTROL,
-            targetPositions=positions.tolist(),
-            targetVelocities=velocities.tolist(),
-            forces=list(self.description.limits.torque),
-            positionGains=[_POSITION_GAIN] * len(positions),
-            velocityGains=[_VELOCITY_GAIN] * len(positions),
+            targetPositions=positions,
+            targetVelocities=velocities,
+            **self._motors,
         )
         self._grip.update()
         self._led = False
@@ -143,7 +155,7 @@ class Arm:
     def hold(self) -> None:
         """Stay where the arm is now, until something else is asked of it."""
         positions, _ = self.body.joint_states()
-        self.follow(positions, np.zeros_like(positions))
+        self.follow(positions.tolist(), [0.0] * len(positions))
 
     def grip(self, opening: float) -> None:
         """Move the fingers towards an opening [m]; a suction cup sucks at 0 and lets go at more."""

@@ -18,6 +18,8 @@ from robots.gripper import ParallelGripper
 
 _SELF_COLLISION = pybullet.URDF_USE_SELF_COLLISION | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_PARENT
 
+_INVISIBLE = pybullet.URDF_IGNORE_VISUAL_SHAPES
+
 
 def connect() -> Any:
     """A simulation of its own, without a window."""
@@ -38,16 +40,24 @@ class RobotBody:
         tool: Number of the tool link.
     """
 
-    def __init__(self, client: Any, description: RobotDescription, *, self_collision: bool = False) -> None:
+    def __init__(
+        self,
+        client: Any,
+        description: RobotDescription,
+        *,
+        self_collision: bool = False,
+        visible: bool = True,
+    ) -> None:
         """Load it.
 
         Args:
             client: The simulation.
             description: What is known of the robot.
             self_collision: Whether links that are no neighbours may hit one another.
+            visible: Whether it is in pictures; they and the loading take less time without it.
         """
         self.client = client
-        flags = _SELF_COLLISION if self_collision else 0
+        flags = (_SELF_COLLISION if self_collision else 0) | (0 if visible else _INVISIBLE)
         self.id = _load(client, description, flags)
         names = [client.getJointInfo(self.id, i) for i in range(client.getNumJoints(self.id))]
         joints = {info[1].decode(): info[0] for info in names}
@@ -68,6 +78,15 @@ class RobotBody:
         """Set the joints to positions [rad], shape (n,), at rest and without physics."""
         places = np.asarray(positions, dtype=np.float64)[:, None].tolist()
         self.client.resetJointStatesMultiDof(self.id, self.joints, places, [[0.0]] * len(places))
+
+    def boxes(self) -> Array:
+        """Two opposite corners of a box around each link [m], shape (number of links, 2, 3).
+
+        The sides of the boxes are parallel to the world's axes.
+        """
+        self.client.performCollisionDetection()
+        links = range(-1, self.client.getNumJoints(self.id))
+        return np.array([self.client.getAABB(self.id, link) for link in links])
 
     def joint_states(self) -> tuple[Array, Array]:
         """Positions [rad] and velocities [rad/s] of the arm's joints, each of shape (n,)."""

@@ -57,7 +57,7 @@ class Kinematics:
 
     def __init__(self, description: RobotDescription) -> None:
         self._client = connect()
-        self._body = RobotBody(self._client, description, self_collision=True)
+        self._body = RobotBody(self._client, description, self_collision=True, visible=False)
         self._chain = Chain.of(self._body)
         self._parked = np.array(description.parked)
         self._home = np.array(description.home)
@@ -84,6 +84,11 @@ class Kinematics:
     def tool_positions(self, postures: Array) -> Array:
         """Where the tool is in the world [m], shape (M, 3), at joint positions [rad], shape (M, n)."""
         return self._chain.reach(postures).positions
+
+    def boxes(self, positions: Array) -> Array:
+        """Corners of boxes around the links [m], shape (K, 2, 3), at joint positions [rad], shape (n,)."""
+        self._body.place(positions)
+        return self._body.boxes()
 
     def inverse(self, world_from_tool: Pose, start: Array) -> Array:
         """Joint positions that bring the tool to a pose.

@@ -7,6 +7,7 @@ import_quietly("pybullet")
 from scenes.description import SceneDescription as SceneDescription
 from scenes.description import load_scene as load_scene
 from scenes.description import scene_names as scene_names
+from scenes.in_view import could_be_seen as could_be_seen
 from scenes.obstacles import object_obstacle as object_obstacle
 from scenes.obstacles import obstacles as obstacles
 from scenes.outlines import object_model as object_model

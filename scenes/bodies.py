@@ -1,5 +1,7 @@
 """Objects as bodies of the simulator, built from boxes and balls."""
 
+from functools import lru_cache
+
 import numpy as np
 import pybullet
 from pybullet_utils.bullet_client import BulletClient
@@ -49,7 +51,13 @@ def place_object(client: BulletClient, body: int, item: ObjectDescription, frame
 def object_pose(client: BulletClient, body: int, item: ObjectDescription) -> Pose:
     """Where an object's frame really is, the middle of its foot."""
     world_from_centre = Pose.from_quaternion(*client.getBasePositionAndOrientation(body))
-    return world_from_centre @ Pose(-_centre_of_mass(blocks_of(item)), np.eye(3))
+    return world_from_centre @ _centre_from_foot(item)
+
+
+@lru_cache(maxsize=256)
+def _centre_from_foot(item: ObjectDescription) -> Pose:
+    """Where an object's frame is in that of its centre of mass."""
+    return Pose(-_centre_of_mass(blocks_of(item)), np.eye(3))
 
 
 def _standing(frame: Frame) -> Pose:

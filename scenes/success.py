@@ -50,7 +50,7 @@ def _fault(world: World, criterion: Inside, robot_bodies: Collection[int]) -> Ve
 
 
 def _not_inside(world: World, criterion: Inside) -> Verdict | None:
-    world_from_container = world.true_poses()[criterion.container]
+    world_from_container = world.true_pose(criterion.container)
     centre = world_from_container.inverse().apply(world.true_centre(criterion.object).position)
     low, high = _region(world, criterion)
     below, above = low - centre, centre - high

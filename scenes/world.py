@@ -47,6 +47,7 @@ class World:
             self.client = BulletClient(pybullet.DIRECT)
             self._plugin = load_renderer(self.client, renderer)
         self.renderer: Renderer = renderer
+        self._step = self.client.stepSimulation  # looked up once: it is called thousands of times
         self._n_steps = 0
         self._sensor_noise = np.random.default_rng([seed, 1])
         _set_up_physics(self.client, description)
@@ -82,7 +83,7 @@ class World:
 
     def step(self) -> None:
         """Let one time step pass."""
-        self.client.stepSimulation()
+        self._step()
         self._n_steps += 1
         self.watch.look()
 
@@ -121,12 +122,11 @@ class World:
 
     def true_poses(self) -> Mapping[str, Pose]:
         """Where the objects really are. Only for the success check, the scripted hand and tests."""
-        return MappingProxyType(
-            {
-                name: object_pose(self.client, body, self.description.objects[name])
-                for name, body in self.bodies.items()
-            }
-        )
+        return MappingProxyType({name: self.true_pose(name) for name in self.bodies})
+
+    def true_pose(self, name: str) -> Pose:
+        """Where an object really is. Only for the success check, the scripted hand and tests."""
+        return object_pose(self.client, self.bodies[name], self.description.objects[name])
 
     def true_frames(self) -> Mapping[str, Frame]:
         """The planar part of the true poses. Only for the success check, the scripted hand and tests."""

@@ -1,7 +1,7 @@
 """One episode: see the scene, generate a path, plan the motion, carry it out, let the physics judge."""
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from time import perf_counter
 
@@ -23,7 +23,7 @@ from cobot_lfd.method import PathModel
 from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.tool import ToolTurn
 from robots import Arm, CollisionError, JointLimitError, Kinematics, NotConvergedError, RobotDescription
-from scenes import SceneDescription, World, check_success, object_obstacle, obstacles
+from scenes import SceneDescription, World, check_success, could_be_seen, object_obstacle, obstacles
 
 _TIME_LIMIT = 60.0  # [s] of the arm's motion, after which a person would have stopped it
 
@@ -119,10 +119,10 @@ def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | 
         film: Given the world, returns what is to be called after each step of the simulation.
     """
     notes = _Notes()
-    with notes.timed("build"):
-        world = World(bench.scene, seed)
-    with world:
-        arm = Arm(world.client, bench.robot)
+    with ExitStack() as ending:
+        with notes.timed("build"):
+            world = ending.enter_context(World(bench.scene, seed))
+            arm = Arm(world.client, bench.robot, visible=film is not None or _in_picture(bench))
         true_frames = world.true_frames()
         with notes.timed("perceive"):
             view = perceive(world, covered=bench.covered)
@@ -174,6 +174,12 @@ def _carry_out(
     if len(execution.carried):
         notes.metrics["tracking_error"] = farthest_from(path, execution.carried)
     return execution.failure or check_success(world, (arm.body.id,))
+
+
+def _in_picture(bench: Bench) -> bool:
+    """Whether the parked arm, or its shadow, could be in the picture that is taken before it moves."""
+    boxes = bench.kinematics.boxes(np.array(bench.robot.parked))
+    return could_be_seen(boxes, bench.scene.camera, bench.scene.light)
 
 
 def _required_frames(bench: Bench, view: View) -> dict[str, Frame]:

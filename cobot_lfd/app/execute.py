@@ -82,11 +82,13 @@ def _follow(
 ) -> bool:
     """Follow one stage; False as soon as the gripper is empty though it must hold something."""
     samples = stage.trajectory.every(world.description.physics.time_step)
-    for i, (position, velocity) in enumerate(zip(samples.positions, samples.velocities, strict=True)):
+    positions, velocities = samples.positions.tolist(), samples.velocities.tolist()
+    for i, (position, velocity) in enumerate(zip(positions, velocities, strict=True)):
         if soft is None:
             arm.follow(position, velocity)
         else:
-            arm.comply(position, velocity, samples.accelerations[i], soft(arm.tool_position()[:2]))
+            wanted = samples.positions[i], samples.velocities[i], samples.accelerations[i]
+            arm.comply(*wanted, soft(arm.tool_position()[:2]))
         world.step()
         if trace is not None:
             trace.append(arm.tool_position()[:2])
