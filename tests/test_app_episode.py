@@ -1,6 +1,7 @@
 """One episode: its frames come from the picture, its motion stays on the path, the physics judges it."""
 
 import socket
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ from cobot_lfd.app.evaluate import Job, bench_for
 from cobot_lfd.app.plan import Stage, plan_motion
 from cobot_lfd.frame import Frame
 from cobot_lfd.method import PathModel
-from cobot_lfd.motion import check_limits
+from cobot_lfd.motion import JointLimits, JointPath, check_limits
+from cobot_lfd.motion.time_law import TimeLaw
+from cobot_lfd.motion.timing_stretch import stretch_to_limits
 from cobot_lfd.outcome import Outcome
 from cobot_lfd.tool import ToolTurn
 from robots import Kinematics, load_robot
@@ -70,6 +73,46 @@ def test_the_pipeline_believes_the_picture_and_not_the_simulator(
     assert verdict.outcome in (Outcome.GRASP_FAILED, Outcome.GRASP_LOST)
 
 
+def test_nothing_is_lifted_before_the_grasp_is_verified(bench: Bench) -> None:
+    """Led to a place without a cube, the fingers close on nothing, and the arm stops where it stands."""
+    heights: list[float] = []
+    elsewhere = Frame(np.array([0.55, 0.0]), 0.0)
+    astray = PathTo(bench.model, elsewhere, "cube")
+
+    def watch(world: World) -> Callable[[], None]:
+        arm = next(i for i in range(world.client.getNumBodies()) if world.client.getNumJoints(i) > 6)
+        tool = world.client.getNumJoints(arm) - 1
+        return lambda: heights.append(world.client.getLinkState(arm, tool, 0, True)[4][2])
+
+    verdict = run_episode(changed(bench, model=astray), SEED, film=watch).result.verdict
+    assert verdict.outcome is Outcome.GRASP_FAILED
+    assert heights[-1] == pytest.approx(min(heights), abs=0.001)  # [m]
+
+
+def test_a_motion_beyond_the_limits_is_not_executed(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every episode's motion passes the check by finite differences: one per cent too fast ends it."""
+
+    def hurried(path: JointPath, law: TimeLaw, limits: JointLimits) -> TimeLaw:
+        return stretch_to_limits(path, law, limits).stretched(0.99)
+
+    monkeypatch.setattr("cobot_lfd.motion.timing.stretch_to_limits", hurried)
+    run = run_episode(bench, SEED, film=lambda _: pytest.fail)
+    assert run.result.verdict.outcome is Outcome.LIMITS_VIOLATED
+    assert "its limit is" in run.result.verdict.detail
+
+
+def test_near_optimal_timing_and_compliance_are_options(model_file: Path, episode: EpisodeRun) -> None:
+    other = bench_for(Job("pick_and_place", "panda", model_file, compliant=True, timing="near_optimal"))
+    run = run_episode(other, SEED)
+    assert run.result.verdict.outcome is Outcome.SUCCESS, run.result.verdict.sentence
+    hurried, usual = run.result.duration, episode.result.duration
+    assert hurried is not None
+    assert usual is not None
+    assert hurried < 0.95 * usual
+    stiff, soft = (r.result.metrics["tracking_error"] for r in (episode, run))
+    assert stiff < soft < 0.002  # [m]
+
+
 def test_what_the_camera_sees_is_where_it_says(episode: EpisodeRun) -> None:
     for seen in episode.result.objects:
         assert seen.position_error < 0.001  # [m]
@@ -111,14 +154,14 @@ class PathTo:
 
     method = "test"
 
-    def __init__(self, model: PathModel, goal: Frame) -> None:
+    def __init__(self, model: PathModel, place: Frame, name: str = "container") -> None:
         self.frame_kinds = model.frame_kinds
         self._model = model
-        self._goal = goal
+        self._astray = {name: place}
 
     def reproduce(self, frames: dict[str, Frame]) -> Any:
-        """The path to the other goal."""
-        return self._model.reproduce({**frames, "container": self._goal})
+        """The path from or to another place."""
+        return self._model.reproduce({**frames, **self._astray})
 
 
 @pytest.mark.parametrize(

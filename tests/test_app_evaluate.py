@@ -207,6 +207,17 @@ def test_a_perturbed_scene_differs_where_it_was_asked_to() -> None:
     assert_allclose(turned, (-y, x, z), atol=1e-12)
 
 
+def test_the_arms_manner_is_a_perturbation(plan: Plan) -> None:
+    manners = Sweep(compliant=(False, True), timing=("near_optimal",)).perturbations()
+    assert [manner.label for manner in manners] == [
+        "timing near_optimal",
+        "compliant 1, timing near_optimal",
+    ]
+    bench = bench_of(replace(plan.trial(0), perturbation=manners[1]))
+    assert bench.timing == "near_optimal"
+    assert bench.compliance is not None
+
+
 def test_detection_noise_has_the_size_that_is_asked_for() -> None:
     seen = detection()
     view = View(np.zeros((2, 2, 3), np.uint8), (seen,), ())

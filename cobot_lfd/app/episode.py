@@ -20,6 +20,7 @@ from cobot_lfd.errors import ModelError, MotionError
 from cobot_lfd.frame import Frame
 from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.method import PathModel
+from cobot_lfd.motion import TimingMethod
 from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.tool import ToolTurn
 from robots import Arm, CollisionError, JointLimitError, Kinematics, NotConvergedError, RobotDescription
@@ -51,6 +52,7 @@ class Bench:
         covered: Whether something covers the camera's lens.
         misjudge: What becomes of a view before anything is done with it, given the seed; None: nothing.
         compliance: How the arm gives way during the carry; None: not at all.
+        timing: How the motion along the path gets its times.
     """
 
     scene_name: str
@@ -62,6 +64,7 @@ class Bench:
     covered: bool = False
     misjudge: Callable[[View, int], View] | None = None
     compliance: Compliance | None = None
+    timing: TimingMethod = "simple"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,7 +152,9 @@ def _attempt(
     _require_on_table(bench.scene, path)
     with notes.timed("plan"):
         turns, around = _turns(bench, view), _surroundings(bench, view)
-        stages = plan_motion(bench.kinematics, bench.robot, bench.scene.task, path, turns, around)
+        stages = plan_motion(
+            bench.kinematics, bench.robot, bench.scene.task, path, turns, around, timing=bench.timing
+        )
     notes.duration = sum(stage.trajectory.duration for stage in stages)
     notes.metrics["path_length"] = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     if notes.duration > _TIME_LIMIT:

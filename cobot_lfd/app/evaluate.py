@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from cobot_lfd.app.compliance import Compliance
 from cobot_lfd.app.episode import Bench
 from cobot_lfd.learning.model import TaskParameterisedGMM
+from cobot_lfd.motion import TimingMethod
 from robots import Kinematics, load_robot
 from scenes import load_scene
 
@@ -19,12 +21,16 @@ class Job:
         robot: Name of the robot.
         model: File of the model.
         covered: Whether something covers the camera's lens.
+        compliant: Whether the arm gives way during the carry where the demonstrations strayed.
+        timing: How the motion along the path gets its times.
     """
 
     scene: str
     robot: str
     model: Path
     covered: bool = False
+    compliant: bool = False
+    timing: TimingMethod = "simple"
 
 
 @lru_cache(maxsize=4)
@@ -45,4 +51,6 @@ def bench_for(job: Job) -> Bench:
         kinematics=Kinematics(robot),
         model=TaskParameterisedGMM.load(job.model),
         covered=job.covered,
+        compliance=Compliance() if job.compliant else None,
+        timing=job.timing,
     )

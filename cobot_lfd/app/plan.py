@@ -8,7 +8,7 @@ import numpy as np
 from cobot_lfd.app.geometry import densify, farthest_from
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import MotionError
-from cobot_lfd.motion import JointLimits, JointPath, JointTrajectory, move, time_path
+from cobot_lfd.motion import JointLimits, JointPath, JointTrajectory, TimingMethod, move, time_path
 from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from cobot_lfd.tool import ToolTurn, tool_above
@@ -63,6 +63,8 @@ def plan_motion(
     path: Array,
     turns: Sequence[ToolTurn],
     surroundings: Surroundings | None = None,
+    *,
+    timing: TimingMethod = "simple",
 ) -> tuple[Stage, ...]:
     """The motion that carries a part along a path.
 
@@ -76,6 +78,7 @@ def plan_motion(
         path: Where the tool carries the part [m], shape (T, 2).
         turns: How the tool may be turned, the best first.
         surroundings: What the arm must not hit; by default nothing is looked at.
+        timing: How straight and planar parts get their times; free movements always get them simply.
 
     Returns:
         The stages, each from rest to rest, in their order.
@@ -91,7 +94,7 @@ def plan_motion(
         with kinematics.collisions(surroundings.obstacles) as check:
             try:
                 lines = _lines(kinematics, check, chosen, path, turn, posture, surroundings.part)
-                stages = _stages(robot, chosen, lines)
+                stages = _stages(robot, chosen, lines, timing)
                 _require_free(check, stages[0].trajectory, stages[-1].trajectory)
             except KinematicsError as error:
                 first = first or error
@@ -171,7 +174,7 @@ def _lines(
     return _Lines(down, up, carry, lower, leave)
 
 
-def _stages(robot: RobotDescription, task: Task, lines: _Lines) -> tuple[Stage, ...]:
+def _stages(robot: RobotDescription, task: Task, lines: _Lines, timing: TimingMethod) -> tuple[Stage, ...]:
     limits = robot.joint_limits.scaled(
         velocity=_VELOCITY_SHARE, acceleration=_ACCELERATION_SHARE, jerk=_JERK_SHARE
     )
@@ -182,26 +185,27 @@ def _stages(robot: RobotDescription, task: Task, lines: _Lines) -> tuple[Stage, 
     held, closed = task.grips, 0.0 if task.grips else open_
     stages = [
         Stage("approach", move(parked, lines.down[0], limits), open_, False),
-        Stage("descend", _timed(lines.down, limits), open_, False),
+        Stage("descend", _timed(lines.down, limits, timing), open_, False),
         Stage("grasp", JointTrajectory.hold(lines.down[-1], grip_time), closed, held),
-        Stage("lift", _timed(lines.up, limits), closed, held),
-        Stage("carry", _timed_samples(lines.carry, limits), closed, held),
-        Stage("lower", _timed(lines.lower, limits), closed, held),
+        Stage("lift", _timed(lines.up, limits, timing), closed, held),
+        Stage("carry", _timed_samples(lines.carry, limits, timing), closed, held),
+        Stage("lower", _timed(lines.lower, limits, timing), closed, held),
         Stage("release", JointTrajectory.hold(lines.lower[-1], grip_time), released, False),
-        Stage("retreat", _timed(lines.leave, limits), released, False),
+        Stage("retreat", _timed(lines.leave, limits, timing), released, False),
         Stage("return", move(lines.leave[-1], parked, limits), released, False),
     ]
     gripping = {"grasp", "release"}
     return tuple(stage for stage in stages if task.grips or stage.name not in gripping)
 
 
-def _timed(waypoints: Array, limits: JointLimits) -> JointTrajectory:
-    return time_path(JointPath.through(waypoints), limits)
+def _timed(waypoints: Array, limits: JointLimits, timing: TimingMethod) -> JointTrajectory:
+    return time_path(JointPath.through(waypoints), limits, method=timing)
 
 
-def _timed_samples(waypoints: Array, limits: JointLimits) -> JointTrajectory:
+def _timed_samples(waypoints: Array, limits: JointLimits, timing: TimingMethod) -> JointTrajectory:
     """The learnt path is an evenly sampled motion; where it turns back on itself, it slows down to do so."""
-    return time_path(JointPath.through(waypoints, parameters=np.arange(len(waypoints))), limits)
+    path = JointPath.through(waypoints, parameters=np.arange(len(waypoints)))
+    return time_path(path, limits, method=timing)
 
 
 def _require_free(check: CollisionCheck, *movements: JointTrajectory) -> None:

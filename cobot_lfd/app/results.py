@@ -67,7 +67,7 @@ class EpisodeResult:
         robot: Name of the robot.
         method: Name of the learning method, such as "improved".
         contender: Name of what was evaluated, where several were: a model's file or a method.
-        perturbation: What was made harder than in the scene's own file, by name; empty: nothing.
+        perturbation: What differs from the scene's file and the arm's usual manner, by name; empty: nothing.
         run: Identifies the plan that the episode belongs to; empty for a single episode.
         trial: Place of the episode in that plan.
         verdict: How the episode ended.
@@ -84,7 +84,7 @@ class EpisodeResult:
     method: str
     verdict: Verdict
     contender: str = ""
-    perturbation: Mapping[str, float] = field(default_factory=dict)
+    perturbation: Mapping[str, float | str] = field(default_factory=dict)
     run: str = ""
     trial: int = 0
     objects: tuple[SeenObject, ...] = ()

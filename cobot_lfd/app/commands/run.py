@@ -13,6 +13,7 @@ from cobot_lfd.app.pictures.draw import save_picture
 from cobot_lfd.app.pictures.film import filming
 from cobot_lfd.app.pictures.illustrate import drawn_view
 from cobot_lfd.app.pictures.plot import plot_model
+from cobot_lfd.motion import TimingMethod
 
 
 def run(
@@ -26,6 +27,8 @@ def run(
     demos: Path | None = None,
     video: Path | None = None,
     covered: bool = False,
+    compliant: bool = False,
+    timing: TimingMethod = "simple",
 ) -> int:
     """Perform the task once, in the scene that the seed lays out.
 
@@ -39,8 +42,11 @@ def run(
         demos: Folder of the demonstrations that are to be in the plot.
         video: File (.webm) for a video of the arm.
         covered: Cover the camera's lens; the episode can then not succeed.
+        compliant: Let the arm give way during the carry where the demonstrations strayed.
+        timing: How the motion along the path gets its times: simple, or near_optimal, which is faster and
+            takes longer to compute.
     """
-    bench = bench_for(Job(scene, robot, model, covered))
+    bench = bench_for(Job(scene, robot, model, covered, compliant, timing))
     with filming(video) if video else nullcontext() as film:
         episode = run_episode(bench, seed, film=film)
     print(f"seed {seed}: {episode.result.verdict.sentence}")

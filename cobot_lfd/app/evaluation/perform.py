@@ -6,6 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from traceback import format_exception_only
 
+from cobot_lfd.app.compliance import Compliance
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluation.contender import Contender, learnt
 from cobot_lfd.app.evaluation.measures import path_measures
@@ -108,6 +109,8 @@ def _bench(scene: str, robot: str, perturbation: Perturbation, contender: Conten
         model=learnt(contender, perturbation.demonstrations),
         covered=perturbation.covered,
         misjudge=perturbation.of_view,
+        compliance=Compliance() if perturbation.compliant else None,
+        timing=perturbation.timing,
     )
 
 

@@ -1,4 +1,4 @@
-"""What is made harder than in the scene's own file: noise, light, friction, ranges, fewer demonstrations."""
+"""What differs from the scene's own file and the arm's usual manner: noise, light, ranges, compliance, ..."""
 
 from itertools import product
 from typing import Annotated, Any
@@ -10,6 +10,7 @@ from cobot_lfd.app.perceive import View
 from cobot_lfd.description_file import DescriptionModel
 from cobot_lfd.detection import Detection
 from cobot_lfd.frame import Frame
+from cobot_lfd.motion import TimingMethod
 from scenes import SceneDescription
 
 _DETECTION_STREAM = 2  # keeps this noise apart from the scene's layout, which has the same seed
@@ -19,7 +20,7 @@ _Factor = Annotated[float, Field(gt=0.0, le=10.0)]
 
 
 class Perturbation(DescriptionModel):
-    """One way of making an episode harder; by default none.
+    """One way of making an episode harder, or of performing it in another manner; by default none.
 
     Attributes:
         detection_noise_mm: Standard deviation added to each coordinate of what was seen [mm].
@@ -31,6 +32,8 @@ class Perturbation(DescriptionModel):
         friction: Factor of all objects' friction.
         range: Factor by which the ranges of the objects' places grow about their middles.
         demonstrations: How many of the demonstrations are learnt from; 0 stands for all.
+        compliant: Whether the arm gives way during the carry where the demonstrations strayed.
+        timing: How the motion along the path gets its times.
         covered: Whether something covers the camera's lens.
     """
 
@@ -43,6 +46,8 @@ class Perturbation(DescriptionModel):
     friction: _Factor = 1.0
     range: _Factor = 1.0
     demonstrations: Annotated[int, Field(ge=0)] = 0
+    compliant: bool = False
+    timing: TimingMethod = "simple"
     covered: bool = False
 
     def changes(self) -> dict[str, Any]:
@@ -52,7 +57,7 @@ class Perturbation(DescriptionModel):
     @property
     def label(self) -> str:
         """What differs, in words; "none" where nothing does."""
-        return ", ".join(f"{name} {value:g}" for name, value in self.changes().items()) or "none"
+        return ", ".join(f"{name} {_word(value)}" for name, value in self.changes().items()) or "none"
 
     def of_scene(self, scene: SceneDescription) -> SceneDescription:
         """The scene as it is under this perturbation."""
@@ -100,6 +105,8 @@ class Sweep(DescriptionModel):
         friction: Factors of all objects' friction.
         range: Factors by which the ranges of the objects' places grow; beyond 1 is beyond what was shown.
         demonstrations: How many of the demonstrations are learnt from; 0 stands for all.
+        compliant: Whether the arm gives way during the carry where the demonstrations strayed.
+        timing: How the motion along the path gets its times.
     """
 
     detection_noise_mm: tuple[float, ...] = (0.0,)
@@ -111,6 +118,8 @@ class Sweep(DescriptionModel):
     friction: tuple[float, ...] = (1.0,)
     range: tuple[float, ...] = (1.0,)
     demonstrations: tuple[int, ...] = (0,)
+    compliant: tuple[bool, ...] = (False,)
+    timing: tuple[TimingMethod, ...] = ("simple",)
 
     def perturbations(self, *, covered: bool = False) -> tuple[Perturbation, ...]:
         """Every combination, the first option varying slowest.
@@ -126,6 +135,10 @@ class Sweep(DescriptionModel):
 
 
 _NOTHING = Perturbation()
+
+
+def _word(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _dim_and_turn(light: dict[str, Any], factor: float, turn: float) -> None:

@@ -25,7 +25,7 @@ class Condition:
     contender: str
     scene: str
     robot: str
-    perturbation: tuple[tuple[str, float], ...] = ()
+    perturbation: tuple[tuple[str, float | str], ...] = ()
 
     @property
     def perturbed(self) -> str:
@@ -85,10 +85,12 @@ def cells_text(cells: Sequence[Cell]) -> str:
     return "\n".join(lines)
 
 
-def _in_words(name: str, value: float) -> str:
+def _in_words(name: str, value: float | str) -> str:
     """A perturbation for people: "detection noise 8 mm"."""
     if value is True:
         return name
+    if isinstance(value, str):
+        return f"{name.replace('_', ' ')} {value.replace('_', ' ')}"
     units = {"_mm": " mm", "_deg": "°"}
     ending = next((ending for ending in units if name.endswith(ending)), "")
     return f"{name.removesuffix(ending).replace('_', ' ')} {value:g}{units.get(ending, '')}"
