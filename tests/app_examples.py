@@ -3,6 +3,7 @@
 import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.demonstrations.pulls import Pulls
 from cobot_lfd.app.results import EpisodeResult, SeenObject
 from cobot_lfd.detection import Detection
 from cobot_lfd.frame import Frame
@@ -37,11 +38,13 @@ def episode(seed: int = 3, outcome: Outcome = Outcome.SUCCESS, detail: str = "")
         tool_positions=rng.normal(size=(n_samples, 3)),
         tool_quaternions=np.tile([1.0, 0.0, 0.0, 0.0], (n_samples, 1)),
         gripper_openings=rng.uniform(0.0, 0.08, n_samples),
+        gripper_orders=np.where(np.arange(n_samples) < 10, 0.08, 0.0),
         hand_forces=rng.normal(size=(n_samples, 3)),
         hand_torques=rng.normal(size=(n_samples, 3)),
         carrying=(np.arange(n_samples) >= 10) & (np.arange(n_samples) < 40),
         picture=rng.integers(0, 256, (24, 32, 3), dtype=np.uint8),
         detections=(detection("cube"), detection("container", x=0.6, y=-0.2, angle=-0.5)),
+        pulls=Pulls(rng.normal(size=(250, 3)), rng.normal(size=(250, 3)), np.zeros(250)),
     )
 
 

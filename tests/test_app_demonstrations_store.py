@@ -18,8 +18,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
-from cobot_lfd.app.demonstrations.episode_file import UNITS, episode_to_bytes
-from cobot_lfd.app.demonstrations.seal import seal
+from cobot_lfd.app.demonstrations.episode_file import PULL_UNITS, UNITS, episode_to_bytes
+from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, seal
 from cobot_lfd.app.demonstrations.store import list_episodes, load_demonstrations, load_episode, save_episode
 from cobot_lfd.camera import Camera
 from cobot_lfd.errors import DataError
@@ -40,6 +40,8 @@ def test_an_episode_comes_back_as_it_was(tmp_path: Path) -> None:
     )
     for name in UNITS:
         assert_array_equal(getattr(loaded, name), getattr(saved, name))
+    for name in PULL_UNITS:
+        assert_array_equal(getattr(loaded.pulls, name), getattr(saved.pulls, name))
     for ours, theirs in zip(loaded.detections, saved.detections, strict=True):
         assert (ours.name, ours.symmetry, ours.confidence) == (
             theirs.name,
@@ -61,6 +63,7 @@ def test_every_series_of_an_episode_is_written_with_its_unit(tmp_path: Path) -> 
         "verdict",
         "detections",
         "camera",
+        "pulls",
     }
     with h5py.File(path) as file:
         assert arrays == {name for name, item in file.items() if "unit" in item.attrs}
@@ -77,6 +80,19 @@ def test_the_camera_comes_back_and_may_be_missing(tmp_path: Path) -> None:
     assert seen is not None
     assert_array_equal(seen.project([0.4, 0.1, 0.02]), camera.project([0.4, 0.1, 0.02]))
     assert load_episode(save_episode(tmp_path, episode())).camera is None
+
+
+def test_a_file_of_version_1_is_read_and_its_gripper_orders_are_worked_out(tmp_path: Path) -> None:
+    closing = replace(episode(), gripper_openings=np.repeat([0.08, 0.03], 25))
+    path = tmp_path / "episode_000000.h5"
+    path.write_bytes(episode_to_bytes(closing))
+    with h5py.File(path, "r+") as file:
+        del file["gripper_orders"], file["pulls"]
+    path.write_bytes(seal(path.read_bytes()[BLOCK_SIZE:], title="cobot-lfd episode", version=1))
+    loaded = load_episode(path)
+    assert_array_equal(loaded.gripper_orders, np.repeat([0.08, 0.0], 25))
+    assert_array_equal(loaded.joint_positions, closing.joint_positions)
+    assert len(loaded.pulls) == 0
 
 
 def test_equal_episodes_give_equal_bytes() -> None:
@@ -177,8 +193,10 @@ def test_a_foreign_file_is_told(tmp_path: Path, contents: bytes) -> None:
 
 def test_another_version_is_told(tmp_path: Path) -> None:
     path = tmp_path / "episode_000000.h5"
-    path.write_bytes(seal(b"from the future", title="cobot-lfd episode", version=2))
-    with pytest.raises(DataError, match=r"has version 2 of the cobot-lfd episode format; .* reads version 1"):
+    path.write_bytes(seal(b"from the future", title="cobot-lfd episode", version=3))
+    with pytest.raises(
+        DataError, match=r"has version 3 of the cobot-lfd episode format; .* reads version 1 and 2"
+    ):
         load_episode(path)
 
 

@@ -13,6 +13,7 @@ import pytest
 
 from cobot_lfd.app.demonstrations.store import list_episodes, load_episode
 from cobot_lfd.app.perceive import View
+from cobot_lfd.app.recording.replay import replay
 from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.session import Session
 from cobot_lfd.app.studio.stage import Stage
@@ -127,6 +128,12 @@ def test_the_physics_judges_and_the_hand_moved_the_arm(
     assert np.linalg.norm(end[:2] - start[:2]) > 0.05  # [m]
     assert np.linalg.norm(episode.hand_forces, axis=1).max() <= 40.0 + 1e-9  # [N]
     assert np.diff(episode.times) == pytest.approx(0.01)  # [s]
+
+
+def test_what_was_recorded_can_be_done_again_exactly(story: tuple[Path, Listener, dict[str, Any]]) -> None:
+    """Every recording begins in a fresh world, so its wrenches move the arm the same way to the last bit."""
+    folder, _, _ = story
+    assert replay(load_episode(list_episodes(folder)[0]), "wrenches").worst == 0.0  # [m]
 
 
 def test_a_session_that_ends_while_recording_keeps_an_incomplete_episode(

@@ -20,10 +20,10 @@ from cobot_lfd.app.demonstrations.folder import (
     trash_episode,
 )
 from cobot_lfd.app.demonstrations.quality import Quality, assess
-from cobot_lfd.app.demonstrations.replay import By
-from cobot_lfd.app.demonstrations.replay import replay as replay_episode
 from cobot_lfd.app.demonstrations.store import episode_number, list_episodes, load_episode, save_episode
 from cobot_lfd.app.pictures.plot_episode import plot_episode
+from cobot_lfd.app.recording.replay import By
+from cobot_lfd.app.recording.replay import replay as replay_episode
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import DataError
 

@@ -1,10 +1,11 @@
 """A recorded episode: everything that one demonstration left behind."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cobot_lfd.app.demonstrations.pulls import Pulls
 from cobot_lfd.arrays import Array, frozen_array
 from cobot_lfd.camera import Camera
 from cobot_lfd.demonstration import Demonstration
@@ -31,12 +32,14 @@ class RecordedEpisode:
         tool_positions: Position of the tool in the world [m], shape (M, 3).
         tool_quaternions: Rotation of the tool in the world, unit quaternions x, y, z, w, shape (M, 4).
         gripper_openings: Distance between the fingers [m], shape (M,).
+        gripper_orders: What the gripper was told [m], shape (M,).
         hand_forces: Force of the hand on the tool, in the world [N], shape (M, 3).
         hand_torques: Torque of the hand on the tool, in the world [N m], shape (M, 3).
         carrying: Whether the sample belongs to the planar carry, shape (M,).
         picture: What the camera saw before the hand touched the arm, RGB uint8, shape (H, W, 3).
         detections: The objects that were found in the picture.
         camera: The camera that took the picture; None where the recording does not tell.
+        pulls: What the hand did in every step of the physics; none where that was not recorded.
     """
 
     scene: str
@@ -50,12 +53,14 @@ class RecordedEpisode:
     tool_positions: Array
     tool_quaternions: Array
     gripper_openings: Array
+    gripper_orders: Array
     hand_forces: Array
     hand_torques: Array
     carrying: NDArray[np.bool_]
     picture: NDArray[np.uint8]
     detections: tuple[Detection, ...]
     camera: Camera | None = None
+    pulls: Pulls = field(default_factory=Pulls.none)
 
     def __post_init__(self) -> None:
         """Copy and check."""
@@ -101,6 +106,7 @@ def _series(n_joints: int) -> dict[str, tuple[int, ...]]:
         "tool_positions": (3,),
         "tool_quaternions": (4,),
         "gripper_openings": (),
+        "gripper_orders": (),
         "hand_forces": (3,),
         "hand_torques": (3,),
     }

@@ -6,7 +6,9 @@ import h5py
 import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
-from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, seal, unseal
+from cobot_lfd.app.demonstrations.gripper_orders import guessed_orders
+from cobot_lfd.app.demonstrations.pulls import Pulls
+from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, check_seal, seal
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection
 from cobot_lfd.errors import DataError
@@ -15,8 +17,11 @@ from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.pose import Pose
 
 TITLE = "cobot-lfd episode"
-VERSION = 1
+VERSION = 2
 """Raised whenever a program of the version before could not read what is written now."""
+
+READABLE = (1, VERSION)
+"""Version 1 knew neither the orders to the gripper, which are worked out, nor the pulls of every step."""
 
 UNITS = {
     "times": "s",
@@ -26,12 +31,16 @@ UNITS = {
     "tool_positions": "m",
     "tool_quaternions": "1 (x, y, z, w)",
     "gripper_openings": "m",
+    "gripper_orders": "m",
     "hand_forces": "N",
     "hand_torques": "N m",
     "carrying": "1 (true or false)",
     "picture": "1 (RGB, 0 to 255)",
 }
 """Unit of every series of an episode."""
+
+PULL_UNITS = {"forces": "N", "torques": "N m", "openings": "m"}
+"""Unit of every array of the pulls."""
 
 DETECTION_UNITS = {"position": "m", "angle": "rad", "covariance": "m, m, rad, squared", "contour": "px"}
 """Unit of every array of a detection."""
@@ -53,6 +62,9 @@ def episode_to_bytes(episode: RecordedEpisode) -> bytes:
             _write_array(file, name, getattr(episode, name), unit)
         if episode.camera is not None:
             _write_camera(file.create_group("camera"), episode.camera)
+        pulls = file.create_group("pulls")
+        for name, unit in PULL_UNITS.items():
+            _write_array(pulls, name, getattr(episode.pulls, name), unit)
         for index, detection in enumerate(episode.detections):
             _write_detection(file.create_group(f"detections/{index}"), detection)
     return seal(buffer.getvalue()[BLOCK_SIZE:], title=TITLE, version=VERSION)
@@ -68,10 +80,10 @@ def episode_from_bytes(sealed: bytes, name: str) -> RecordedEpisode:
     Raises:
         DataError: If the file is foreign, damaged or of another version, or its contents are no episode.
     """
-    unseal(sealed, title=TITLE, version=VERSION, name=name)
+    version = check_seal(sealed, title=TITLE, versions=READABLE, name=name)
     try:
         with h5py.File(io.BytesIO(sealed), "r") as file:
-            return _read_episode(file)
+            return _read_episode(file, version)
     except (KeyError, TypeError, ValueError, OSError) as error:
         raise DataError(f"{name} holds no valid episode: {error}. Record it again.") from error
 
@@ -120,8 +132,11 @@ def _read_camera(group: h5py.Group) -> Camera:
     )
 
 
-def _read_episode(file: h5py.File) -> RecordedEpisode:
+def _read_episode(file: h5py.File, version: int) -> RecordedEpisode:
     detections = file.get("detections", {})
+    series = {name: file[name][()] for name in UNITS if version > 1 or name != "gripper_orders"}
+    if version == 1:
+        series["gripper_orders"] = guessed_orders(series["gripper_openings"])
     return RecordedEpisode(
         scene=str(file.attrs["scene"]),
         robot=str(file.attrs["robot"]),
@@ -129,8 +144,13 @@ def _read_episode(file: h5py.File) -> RecordedEpisode:
         verdict=Verdict(Outcome.from_kind(str(file.attrs["outcome"])), str(file.attrs["detail"])),
         camera=_read_camera(file["camera"]) if "camera" in file else None,
         detections=tuple(_read_detection(detections[str(index)]) for index in range(len(detections))),
-        **{name: file[name][()] for name in UNITS},
+        pulls=_read_pulls(file) if version > 1 else Pulls.none(),
+        **series,
     )
+
+
+def _read_pulls(file: h5py.File) -> Pulls:
+    return Pulls(**{name: file["pulls"][name][()] for name in PULL_UNITS})
 
 
 def _read_detection(group: h5py.Group) -> Detection:

@@ -6,6 +6,7 @@ bytes never reach a parser that might do worse than fail.
 """
 
 import hashlib
+from collections.abc import Sequence
 
 from cobot_lfd.errors import DataError
 
@@ -25,13 +26,13 @@ def seal(contents: bytes, *, title: str, version: int) -> bytes:
     return f"{title} version {version}\nsha256 {digest}\n".encode().ljust(BLOCK_SIZE, b"\0") + contents
 
 
-def unseal(sealed: bytes, *, title: str, version: int, name: str) -> bytes:
-    """The contents of a sealed file, checked.
+def check_seal(sealed: bytes, *, title: str, versions: Sequence[int], name: str) -> int:
+    """The version of a sealed file, after its contents were checked.
 
     Args:
         sealed: The bytes of the whole file.
         title: What the file must be.
-        version: The only version that the caller can read.
+        versions: The versions that the caller can read.
         name: What the file is called in an error message.
 
     Raises:
@@ -41,15 +42,15 @@ def unseal(sealed: bytes, *, title: str, version: int, name: str) -> bytes:
     if not sealed.startswith(f"{title} version ".encode()):
         raise DataError(f"{name} is no {title} file; move it to another folder.")
     given = sealed.split(b"\n", 1)[0].removeprefix(f"{title} version ".encode())
-    if given.isdigit() and int(given) != version:
+    version = int(given) if given.isdigit() else versions[-1]
+    if version not in versions:
         raise DataError(
-            f"{name} has version {int(given)} of the {title} format; this program reads version {version}. "
-            "Use the version of the program that wrote it."
+            f"{name} has version {version} of the {title} format; this program reads version "
+            f"{' and '.join(map(str, versions))}. Use the version of the program that wrote it."
         )
-    contents = sealed[BLOCK_SIZE:]
-    if sealed != seal(contents, title=title, version=version):
+    if sealed != seal(sealed[BLOCK_SIZE:], title=title, version=version):
         raise DataError(
             f"{name} is damaged: its contents do not match its checksum. "
             "Restore it from a copy, or move it to another folder."
         )
-    return contents
+    return version

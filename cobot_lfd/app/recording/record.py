@@ -19,8 +19,6 @@ from cobot_lfd.outcome import Outcome, Verdict
 from robots import Arm, load_robot
 from scenes import SceneDescription, World, check_success, load_scene
 
-_SAMPLE_PERIOD = 0.01  # [s] between two recorded samples
-
 
 def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpisode:
     """One demonstration by the scripted hand.
@@ -38,7 +36,7 @@ def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpiso
     with World(scene, seed) as world:
         arm = Arm(world.client, robot)
         view = perceive(world)
-        recorder = Recorder()
+        recorder = Recorder(scene.physics.time_step)
         lead(world, arm, _scripted_hand(scene, world, arm, seed), recorder)
         verdict = judge(world, arm, view)
         return recorder.episode(
@@ -58,8 +56,6 @@ def lead(
         recorder: What happens is recorded here; None to record nothing.
         observer: Called after every step of the simulation.
     """
-    time_step = world.description.physics.time_step
-    every = max(1, round(_SAMPLE_PERIOD / time_step))
     opening = arm.opening()
     while True:
         state = arm.state()
@@ -70,7 +66,7 @@ def lead(
             opening = action.opening
             arm.grip(opening)
         arm.lead(action.force, action.torque)
-        if recorder is not None and round(world.time / time_step) % every == 0:
+        if recorder is not None:
             recorder.add(world.time, state, action)
         world.step()
         if observer is not None:

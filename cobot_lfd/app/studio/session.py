@@ -7,7 +7,6 @@ from queue import SimpleQueue
 from time import sleep
 
 from cobot_lfd.app.demonstrations.folder import restore_episode, trash_episode
-from cobot_lfd.app.demonstrations.replay import replay_in
 from cobot_lfd.app.demonstrations.store import episode_number, save_episode
 from cobot_lfd.app.episode import Bench, run_episode
 from cobot_lfd.app.execute import Observer
@@ -16,6 +15,7 @@ from cobot_lfd.app.recording.guided_hand import GuidedHand
 from cobot_lfd.app.recording.hand import HandAction
 from cobot_lfd.app.recording.record import seeds_in
 from cobot_lfd.app.recording.recorder import Recorder
+from cobot_lfd.app.recording.replay import replay_in
 from cobot_lfd.app.studio.audience import Audience, Mode
 from cobot_lfd.app.studio.coverage import suggest_next
 from cobot_lfd.app.studio.kept import Kept
@@ -118,7 +118,8 @@ class Session:
             return
         if self.stage.touched:
             self._lay_out(self.stage.seed)
-        self._recorder = Recorder()
+        self.stage.begin()
+        self._recorder = Recorder(self.stage.scene.physics.time_step)
         self._set_mode(Mode.RECORDING)
 
     def stop(self) -> None:
@@ -268,7 +269,7 @@ class Session:
     def _save(self, verdict: Verdict) -> None:
         """Keep what was recorded; it is safe on the disk when this returns, or still being recorded."""
         recorder, view = self._recorder, self.stage.view
-        if recorder is None or len(recorder.samples) < 2:
+        if recorder is None or recorder.n_samples < 2:
             self._recorder = None
             return
         recorded = recorder.episode(

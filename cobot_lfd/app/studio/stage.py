@@ -74,6 +74,20 @@ class Stage:
             self.view = perceive(self.world)
         self.show()
 
+    def begin(self) -> None:
+        """The scene afresh and the arm at rest where it is: what a hand does from now on can be done again.
+
+        A replay starts in a world that has just been built. Only if the recording did so, too, are the two
+        equal to the last bit.
+        """
+        positions, _ = self.arm.body.joint_states()
+        self.world.close()
+        self.world = World(self.scene, self.seed)
+        self.arm = Arm(self.world.client, self.robot)
+        self.arm.body.place(positions)
+        self.touched = False
+        self.clock.restart()
+
     def show(self) -> None:
         """Show the scene as it is."""
         self.touched = False

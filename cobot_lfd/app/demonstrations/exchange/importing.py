@@ -19,6 +19,7 @@ import numpy as np
 from pydantic import Field
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
+from cobot_lfd.app.demonstrations.gripper_orders import guessed_orders
 from cobot_lfd.app.disk import told
 from cobot_lfd.arrays import Array
 from cobot_lfd.description_file import DescriptionModel, read_description
@@ -75,6 +76,7 @@ def import_path(path: Path, frames: Path, scene: str, *, robot: str = IMPORTED) 
             tool_positions=np.column_stack([columns[name] for name in ("x", "y", "z")]),
             tool_quaternions=np.column_stack([columns[name] for name in ("qx", "qy", "qz", "qw")]),
             gripper_openings=columns["gripper"],
+            gripper_orders=guessed_orders(columns["gripper"]),
             hand_forces=np.zeros((n_samples, 3)),
             hand_torques=np.zeros((n_samples, 3)),
             carrying=columns["carrying"] > 0.5,

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
-from cobot_lfd.app.demonstrations.replay import gripper_orders
 from cobot_lfd.arrays import Array
 
 ACTION_NAMES = ("dx", "dy", "dz", "droll", "dpitch", "dyaw", "gripper")
@@ -67,6 +66,5 @@ def _actions(episode: RecordedEpisode, nearest: Array) -> Array:
     rotations = Rotation.from_quat(episode.tool_quaternions[nearest])
     following = np.minimum(np.arange(len(nearest)) + 1, len(nearest) - 1)
     turns = (rotations[following] * rotations.inv()).as_rotvec()
-    orders = gripper_orders(episode.gripper_openings, float(max(episode.gripper_openings.max(), 1e-3)))
-    closing = np.where(orders[nearest] > 0.0, -1.0, 1.0)
+    closing = np.where(episode.gripper_orders[nearest] > 0.0, -1.0, 1.0)
     return np.column_stack([positions[following] - positions, turns, closing])
