@@ -34,17 +34,21 @@ class World:
         watch: What has been noticed since the world was built. Only for the success check.
     """
 
-    def __init__(self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny") -> None:
+    def __init__(
+        self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny", window: bool = False
+    ) -> None:
         """Build the world.
 
         Args:
             description: The scene.
             seed: Decides where the objects stand.
             renderer: What draws the pictures: "tiny" needs nothing, "egl" is faster and draws other colours.
+            window: Whether the simulator opens a window on the display; there can be one in a process, and
+                every call then may wait for its picture.
         """
         self.description = description
         with quiet_output():
-            self.client = BulletClient(pybullet.DIRECT)
+            self.client = BulletClient(pybullet.GUI if window else pybullet.DIRECT)
             self._plugin = load_renderer(self.client, renderer)
         self.renderer: Renderer = renderer
         self._step = self.client.stepSimulation  # looked up once: it is called thousands of times

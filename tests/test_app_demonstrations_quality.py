@@ -34,6 +34,7 @@ def carried_along(path: Array) -> RecordedEpisode:
         tool_positions=np.column_stack([path, np.full(n, 0.2)]),
         tool_quaternions=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
         gripper_openings=np.zeros(n),
+        gripper_orders=np.zeros(n),
         carrying=np.ones(n, dtype=np.bool_),
         detections=(detection("cube", x=0.5, y=0.0), detection("container", x=0.5, y=0.3)),
         **rows,

@@ -1,7 +1,7 @@
 """cobot-lfd record: demonstrations into a folder."""
 
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from tyro.conf import Positional
 
@@ -10,13 +10,16 @@ from cobot_lfd.app.commands.options import require_positive
 from cobot_lfd.app.progress import progress
 from cobot_lfd.app.recording.record import record_session
 
+if TYPE_CHECKING:
+    from cobot_lfd.app.studio.session import Session
+
 
 def record(
     scene: Positional[str],
     *,
     out: Path,
     robot: str = "panda",
-    hand: Literal["scripted", "browser"] = "scripted",
+    hand: Literal["scripted", "browser", "mouse"] = "scripted",
     demos: int = 6,
     seed: int = 0,
     port: int | None = None,
@@ -29,8 +32,8 @@ def record(
         scene: Name of the scene; see 'cobot-lfd scenes'.
         out: Folder for the demonstrations. What is in it already stays; seeds that it has are left out.
         robot: Name of the robot; see 'cobot-lfd robots'.
-        hand: Who leads: a script, or a person in a browser.
-        demos: How many demonstrations; in the browser one records until one ends it.
+        hand: Who leads: a script, or a person: in a browser, or with the mouse in the simulator's window.
+        demos: How many demonstrations the script shows; a person records until the person ends it.
         seed: Of the first demonstration; each further one has the next.
         port: Of the page in the browser; a free one by default.
         host: Serve the page on this address of the machine, for other machines; it asks for a token then.
@@ -39,6 +42,8 @@ def record(
     require_positive("demos", demos)
     if hand == "browser":
         return _in_browser(scene, robot, out, seed, port=port, host=host, show=open)
+    if hand == "mouse":
+        return _in_window(scene, robot, out, seed)
     with progress("recording", demos) as report:
         episodes = record_session(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
     kept = sum(episode.verdict.succeeded for episode in episodes)
@@ -53,7 +58,18 @@ def _in_browser(
     from cobot_lfd.app.studio.launch import open_studio
 
     session = open_studio(scene, robot, out, first_seed=seed, port=port, host=host, show=show)
-    print(
-        f"{len(session.kept.episodes)} demonstrations, {len(session.kept.good)} to learn from, are in {out}"
-    )
+    return _told(session, out)
+
+
+def _in_window(scene: str, robot: str, out: Path, seed: int) -> int:
+    """The same in the simulator's window."""
+    from cobot_lfd.app.studio.window import open_window
+
+    return _told(open_window(scene, robot, out, first_seed=seed), out)
+
+
+def _told(session: "Session", out: Path) -> int:
+    """Say what a person recorded."""
+    kept = session.kept
+    print(f"demonstrations in {out}: {len(kept.episodes)}, of which {len(kept.good)} did the task")
     return DONE

@@ -86,6 +86,10 @@ class GuidedHand:
         let_go = self._open if released is None else released
         self._wanted_opening = let_go if self.is_closed else 0.0
 
+    def switch_guide(self) -> None:
+        """Take the planar guide off, or put it on."""
+        self.guide = not self.guide
+
     def lift(self) -> None:
         """Lift the tool: with a part to the height of the carry, without one to where it is clear of all."""
         self._height = self._task.carry_height if self.is_closed else self._task.travel_height

@@ -15,9 +15,9 @@ class Mode(Enum):
     """What is going on; the value is what the page says."""
 
     WORKING = "one moment ..."
-    READY = "ready: press Start, then drag the tool"
-    RECORDING = "recording: drag the tool through the task, then press Stop"
-    STOPPED = "kept: go on with the next scene, or discard it"
+    READY = "ready: press Start [R], then drag the tool"
+    RECORDING = "recording: drag the tool through the task, then press Stop [T]"
+    STOPPED = "kept: go on with the next scene [N], or discard it"
     REPLAYING = "replaying"
     TRYING = "the arm performs the task as it has learnt it"
 

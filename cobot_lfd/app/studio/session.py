@@ -90,6 +90,11 @@ class Session:
         """Whether something was discarded that can be brought back."""
         return bool(self._discarded)
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it goes on."""
+        return self._open
+
     def order(self, what: Callable[[], None]) -> None:
         """Ask for something to be done, from any thread; it is done between two steps of the simulation."""
         self._orders.put(what)
