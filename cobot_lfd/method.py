@@ -7,6 +7,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.frame import Frame, FrameKind
 from cobot_lfd.learning.path import GeneratedPath
+from cobot_lfd.recognition import Recognition
 
 
 @runtime_checkable
@@ -45,6 +46,11 @@ class PathModel(Protocol):
     @property
     def frame_kinds(self) -> Mapping[str, FrameKind]:
         """The frames that it needs, and whether the path depends on the direction of each."""
+        ...
+
+    @property
+    def recognition(self) -> Recognition | None:
+        """How its frames are recognised in a picture; None where they are the scene's objects."""
         ...
 
     def reproduce(self, frames: Mapping[str, Frame], /) -> GeneratedPath:

@@ -128,7 +128,7 @@ def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | 
             arm = Arm(world.client, bench.robot, visible=film is not None or _in_picture(bench))
         true_frames = world.true_frames()
         with notes.timed("perceive"):
-            view = perceive(world, covered=bench.covered)
+            view = perceive(world, covered=bench.covered, recognition=bench.model.recognition)
         if bench.misjudge is not None:
             view = bench.misjudge(view, seed)
         try:
@@ -188,14 +188,16 @@ def _in_picture(bench: Bench) -> bool:
 
 
 def _required_frames(bench: Bench, view: View) -> dict[str, Frame]:
-    """The frames that the model and the task need; fails where one was not seen."""
+    """The frames that the model needs; fails where one of them, or what the task needs, was not seen."""
     task = bench.scene.task
     rules = [rule.frame for rule in (task.start_yaw, task.end_yaw) if rule is not None]
-    for name in dict.fromkeys([*bench.model.frame_kinds, task.pick, *rules]):
-        found = view.find(name)
+    needed = view.find_for(bench.model)
+    frames = {}
+    for name, found in [*needed.items(), *((name, view.find(name)) for name in (task.pick, *rules))]:
         if isinstance(found, NotSeen):
             raise _EpisodeFailedError(Verdict(Outcome.OBJECT_NOT_SEEN, f"{name}: {found.reason}"))
-    return {name: view.frames[name] for name in bench.model.frame_kinds}
+        frames[name] = found.frame
+    return {name: frames[name] for name in needed}
 
 
 def _turns(bench: Bench, view: View) -> tuple[ToolTurn, ...]:

@@ -9,8 +9,9 @@ from typing import Self
 import numpy as np
 
 from cobot_lfd.arrays import Array
+from cobot_lfd.detection import ObjectModel
 from cobot_lfd.errors import ModelError
-from cobot_lfd.frame import FrameKind
+from cobot_lfd.frame import Frame, FrameKind
 from cobot_lfd.learning import storage
 from cobot_lfd.learning.course.course import Course
 from cobot_lfd.learning.course.features import FeatureSet
@@ -27,6 +28,7 @@ from cobot_lfd.learning.product.approach import ApproachAngles
 from cobot_lfd.learning.product.frame_product import FrameProduct
 from cobot_lfd.learning.product.gather import Visits
 from cobot_lfd.learning.settings import LearningSettings, settings_for
+from cobot_lfd.recognition import LearntFrame, Part, Recognition
 
 STORED: tuple[type, ...] = (
     ApproachAngles,
@@ -34,12 +36,17 @@ STORED: tuple[type, ...] = (
     Course,
     FeatureSet,
     Finding,
+    Frame,
     FrameKind,
     FrameProduct,
+    LearntFrame,
     Mixture,
     MixtureEncoding,
+    ObjectModel,
+    Part,
     Profile,
     Progress,
+    Recognition,
     SceneRegression,
     TableEncoding,
     Visits,
@@ -59,6 +66,7 @@ class TaskParameterisedGMM:
         duration: Median duration of the demonstrations [s].
         dimension: 2 for planar tasks, 3 for spatial ones.
         method: Name of the method that fitted it; "custom" where settings of one's own were given.
+        recognition: How its frames are recognised in a picture; None where they are named objects of a scene.
     """
 
     findings: tuple[Finding, ...]
@@ -68,6 +76,7 @@ class TaskParameterisedGMM:
     duration: float
     dimension: int
     method: str
+    recognition: Recognition | None = None
 
     @classmethod
     def fit(

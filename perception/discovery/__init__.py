@@ -2,6 +2,7 @@
 
 from perception.discovery.describe import Description as Description
 from perception.discovery.describe import describe as describe
+from perception.discovery.frames import recognise_frames as recognise_frames
 from perception.discovery.match import Kind as Kind
 from perception.discovery.match import match as match
 from perception.discovery.merge import Motion as Motion

@@ -6,13 +6,15 @@ from pathlib import Path
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.demonstrations.store import load_demonstrations
+from cobot_lfd.app.demonstrations.store import load_kept
+from cobot_lfd.app.discovery.recognised import demonstrations_of
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluate import Job, bench_for
 from cobot_lfd.app.pictures.draw import save_picture
 from cobot_lfd.app.pictures.film import filming
 from cobot_lfd.app.pictures.illustrate import drawn_view
 from cobot_lfd.app.pictures.plot import plot_model
+from cobot_lfd.detection import Detection
 from cobot_lfd.motion import TimingMethod
 
 
@@ -66,7 +68,8 @@ def _illustrate(
     if picture:
         files.append(save_picture(drawn_view(bench.scene, episode.view, path), picture))
     if plot and path is not None:
-        demonstrations = load_demonstrations(demos) if demos else []
-        frames = {name: episode.view.frames[name] for name in bench.model.frame_kinds}
+        demonstrations = demonstrations_of(bench.model, load_kept(demos)) if demos else []
+        found = episode.view.find_for(bench.model)
+        frames = {name: seen.frame for name, seen in found.items() if isinstance(seen, Detection)}
         files.append(plot_model(demonstrations, frames, path, file=plot, kinds=bench.model.frame_kinds))
     return files

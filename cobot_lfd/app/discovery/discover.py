@@ -54,6 +54,8 @@ class Discovery:
         demonstrations: The paths with the kept frames.
         recognition: How the kept frames are recognised in new pictures.
         kinds: The kept frames' kinds.
+        known_kinds: Those of them that follow from what was seen: what never moves has axes, what looks the
+            same when turned has none.
     """
 
     candidates: Candidates
@@ -62,6 +64,7 @@ class Discovery:
     demonstrations: tuple[Demonstration, ...]
     recognition: Recognition
     kinds: Mapping[str, FrameKind]
+    known_kinds: Mapping[str, FrameKind]
 
     @property
     def kept(self) -> tuple[str, ...]:
@@ -91,7 +94,8 @@ def discover(episodes: Sequence[RecordedEpisode], camera: Camera) -> Discovery:
         )
         for n, episode in enumerate(episodes)
     ]
-    choice = choose_frames(shown, _known_kinds(usable, candidates))
+    known_kinds = _known_kinds(usable, candidates)
+    choice = choose_frames(shown, known_kinds)
     decisions = _decisions(candidates, frames, choice)
     kept = [item.name for item in decisions if item.fate is Fate.KEPT]
     return Discovery(
@@ -101,6 +105,7 @@ def discover(episodes: Sequence[RecordedEpisode], camera: Camera) -> Discovery:
         tuple(Demonstration(d.path, {name: d.frames[name] for name in kept}, d.times) for d in shown),
         _recognition(candidates, kept),
         {name: choice.kinds[name] for name in kept},
+        {name: kind for name, kind in known_kinds.items() if name in kept},
     )
 
 

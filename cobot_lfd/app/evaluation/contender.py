@@ -107,6 +107,7 @@ class _Adapted:
     method: str
     frame_kinds: Mapping[str, FrameKind]
     model: Reproducer
+    recognition: None = None
 
     def reproduce(self, frames: Mapping[str, Frame]) -> GeneratedPath:
         """The path for the frames of a new scene; positions alone count as equally spaced and certain."""

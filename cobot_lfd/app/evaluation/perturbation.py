@@ -1,5 +1,6 @@
 """What differs from the scene's own file and the arm's usual manner: noise, light, ranges, compliance, ..."""
 
+from dataclasses import replace
 from itertools import product
 from typing import Annotated, Any
 
@@ -76,7 +77,14 @@ class Perturbation(DescriptionModel):
         if not (self.detection_noise_mm or self.detection_noise_deg):
             return view
         rng = np.random.default_rng([seed, _DETECTION_STREAM])
-        return View(view.picture, tuple(self._misjudged(item, rng) for item in view.detections), view.missing)
+        return replace(
+            view,
+            detections=tuple(self._misjudged(item, rng) for item in view.detections),
+            others=(),
+            learnt=tuple(
+                self._misjudged(item, rng) if isinstance(item, Detection) else item for item in view.learnt
+            ),
+        )
 
     def _misjudged(self, seen: Detection, rng: np.random.Generator) -> Detection:
         shift = rng.normal(size=2) * self.detection_noise_mm / 1e3

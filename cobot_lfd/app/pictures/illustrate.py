@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from cobot_lfd.app.perceive import View
 from cobot_lfd.app.pictures.draw import draw_detections
+from cobot_lfd.detection import Detection
 from cobot_lfd.learning.path import GeneratedPath
 from scenes import SceneDescription, object_models
 
@@ -16,15 +17,16 @@ def drawn_view(
 
     Args:
         scene: The scene.
-        view: What was seen of it.
+        view: What was seen of it; where a model recognises its frames by itself, these are drawn.
         path: The path that was generated; None where it did not come to that.
         scale: Magnification.
     """
     models = object_models(scene)
+    learnt = tuple(item for item in view.learnt if isinstance(item, Detection))
     return draw_detections(
         view.picture,
         scene.camera.camera,
-        view.detections,
+        learnt or view.detections,
         models=models,
         path=None if path is None else path.mean,
         path_z=next(model.z for model in models if model.name == scene.task.pick),
