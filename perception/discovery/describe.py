@@ -1,14 +1,12 @@
 """What a thing looks like, learnt from several pictures of it: outline, height, colour and symmetry.
 
-Nothing is told about the thing. Two readings of its pictures are tried: that all of the region is one flat
-outline, and that only the faces that are as bright as most of it are its upper side, at one of several
-heights, and the rest walls below. The reading is taken whose outline lies best on the edges in all pictures.
+Nothing is told about the thing. It is read as an upright one, whose upper side is as bright as most of it
+and has walls below, if that explains the regions that show it; else as flat. Its outline is that of the mean
+silhouette of its upper side over all pictures; outline and poses are found from one another.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -18,6 +16,7 @@ from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
 from perception.assignment import quality
+from perception.discovery.height import height
 from perception.discovery.polygon import outline, symmetry
 from perception.discovery.propose import Thing
 from perception.discovery.template import Template, align, mean_silhouette
@@ -25,12 +24,10 @@ from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture
 
-_HEIGHTS = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08)
-"""Of the upper side above the table, those that are tried first [m]."""
-_FINER = (-0.005, 0.005)  # Those that are tried around the best of them [m].
-_CLEARLY_BETTER = 1.05  # Another reading must fit better by this factor: height is told by seen walls only.
 _BRIGHT = 0.85  # Of the usual brightness; a face that is darker is a wall.
 _LEAST_TOP = 0.35  # Of a region's area that its upper side covers at least.
+_MOST_UNEXPLAINED = 0.06  # Of the regions' area; what an upright thing explains worse is read as flat.
+_N_ROUNDS = 3  # In which outline and poses are found from one another.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,19 +41,6 @@ class Description:
 
     model: ObjectModel
     fit: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reading:
-    """What comes out at one height: the description, if any, and where the thing is in each picture."""
-
-    z: float
-    description: Description | None
-    frames: tuple[Frame, ...]
-
-    @property
-    def fit(self) -> float:
-        return self.description.fit if self.description else 0.0
 
 
 def describe(
@@ -75,43 +59,29 @@ def describe(
     """
     middle = 0.5 * np.array([camera.width, camera.height])
     order = np.argsort([np.linalg.norm(thing.region.centroid - middle) for thing in things])
-    pictures, whole = [pictures[i] for i in order], [things[i] for i in order]
-    tops = [_upper_side(picture, thing) for picture, thing in zip(pictures, whole, strict=True)]
-    readings: list[tuple[list[Thing], tuple[float, ...]]] = [(whole, _HEIGHTS[:1])]
-    if all(t.region.area > _LEAST_TOP * w.region.area for t, w in zip(tops, whole, strict=True)):
-        readings.append((tops, _HEIGHTS))
-    best: Description | None = None
-    for regions, heights in readings:
-        found = _best_height(name, pictures, regions, camera, heights)
-        if found is not None and (best is None or found.fit > _CLEARLY_BETTER * best.fit):
-            best = found
-    return best
+    pictures, things = [pictures[i] for i in order], [things[i] for i in order]
+    tops = [_upper_side(picture, thing) for picture, thing in zip(pictures, things, strict=True)]
+    z, unexplained = height(tops, things, camera)
+    small = any(t.region.area < _LEAST_TOP * w.region.area for t, w in zip(tops, things, strict=True))
+    upright = unexplained < _MOST_UNEXPLAINED and not small
+    return _outlined(name, pictures, tops if upright else things, camera, z if upright else 0.0)
 
 
-def _best_height(
-    name: str, pictures: Sequence[Picture], things: list[Thing], camera: Camera, heights: Sequence[float]
+def _outlined(
+    name: str, pictures: Sequence[Picture], things: Sequence[Thing], camera: Camera, z: float
 ) -> Description | None:
-    """The height that fits best; walls that are seen tell it, or nothing does and the lowest is taken."""
+    """The outline at a height, found from poses and they from it, in turn."""
     frames, half = align(things, camera)
-    read = partial(_read, name, pictures, things, camera, half)
-    tried = [read(frames, heights[0], heights[0])]
-    for before, z in pairwise((heights[0], *heights)):
-        tried.append(read(tried[-1].frames, before, z))
-    best = _better(tried)
-    if len(heights) > 1:
-        finer = [best.z + step for step in _FINER if best.z + step > 0]
-        best = _better([best, *(read(best.frames, best.z, z) for z in finer)])
-    settled = read(best.frames, best.z, best.z)
-    return read(settled.frames, best.z, best.z).description
-
-
-def _better(readings: Sequence[_Reading]) -> _Reading:
-    """The one that fits best; a later one must do so clearly."""
-    best = readings[0]
-    for reading in readings[1:]:
-        if reading.fit > _CLEARLY_BETTER * best.fit:
-            best = reading
-    return best
+    frames = [_lifted(frame, camera, z) for frame in frames]
+    description = None
+    for _ in range(_N_ROUNDS):
+        model = _model(name, mean_silhouette(things, camera, frames, z, half), things)
+        if model is None:
+            break
+        fits = [_fit(p, t, model, camera, f) for p, t, f in zip(pictures, things, frames, strict=True)]
+        frames = [fit.frame if fit else frame for fit, frame in zip(fits, frames, strict=True)]
+        description = Description(model, float(np.mean([quality(fit) if fit else 0.0 for fit in fits])))
+    return None if description is None else replace(description, model=_straightened(description.model))
 
 
 def _upper_side(picture: Picture, thing: Thing) -> Thing:
@@ -129,35 +99,15 @@ def _upper_side(picture: Picture, thing: Thing) -> Thing:
     return replace(thing, mask=mask, region=replace(thing.region, area=float(mask.sum())))
 
 
-def _read(
-    name: str,
-    pictures: Sequence[Picture],
-    things: Sequence[Thing],
-    camera: Camera,
-    half: float,
-    frames: Sequence[Frame],
-    before: float,
-    z: float,
-) -> _Reading:
-    """The outline at height ``z`` from poses that held at height ``before``."""
-    starts = [_lifted(frame, camera, before, z) for frame in frames]
-    model = _model(name, mean_silhouette(things, camera, starts, z, half), things)
-    if model is None:
-        return _Reading(z, None, tuple(starts))
-    fits = [_fit(p, t, model, camera, s) for p, t, s in zip(pictures, things, starts, strict=True)]
-    moved = tuple(fit.frame if fit else start for fit, start in zip(fits, starts, strict=True))
-    return _Reading(z, Description(model, float(np.mean([quality(f) if f else 0.0 for f in fits]))), moved)
-
-
 def _fit(
     picture: Picture, thing: Thing, model: ObjectModel, camera: Camera, start: Frame
 ) -> OutlineFit | None:
     return fit_outline(picture, camera, model, Mixture.of(thing.region.colour, thing.table), start)
 
 
-def _lifted(frame: Frame, camera: Camera, z: float, new_z: float) -> Frame:
-    """The frame whose image at another height is that of one at this height."""
-    return Frame(camera.to_plane(camera.project([*frame.position, z]), new_z), frame.angle)
+def _lifted(frame: Frame, camera: Camera, z: float) -> Frame:
+    """The frame whose image at a height is that of one on the table."""
+    return Frame(camera.to_plane(camera.project([*frame.position, 0.0]), z), frame.angle)
 
 
 def _model(name: str, template: Template, things: Sequence[Thing]) -> ObjectModel | None:
@@ -174,6 +124,13 @@ def _model(name: str, template: Template, things: Sequence[Thing]) -> ObjectMode
         symmetry=symmetry(corners),
         base_z=0.0,
     )
+
+
+def _straightened(model: ObjectModel) -> ObjectModel:
+    """The same thing with its longest side along the frame's x axis."""
+    sides = np.roll(model.outline, -1, axis=0) - model.outline
+    x, y = sides[int(np.linalg.norm(sides, axis=1).argmax())]
+    return replace(model, outline=Frame(np.zeros(2), float(np.arctan2(y, x))).localise(model.outline))
 
 
 def _middle(corners: Array) -> Array:

@@ -42,6 +42,8 @@ def recognise(
     Raises:
         ValueError: If the picture is not one of this camera.
     """
+    if not models:
+        return ()
     things = propose(picture, camera)
     tried = [[_try(picture, camera, model, thing) for thing in things] for model in models]
     chosen = _assigned(models, tried)
