@@ -25,17 +25,13 @@ from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.store import load_kept
 from cobot_lfd.app.discovery.candidates import BASE
 from cobot_lfd.app.discovery.discover import Discovery, discover
-from cobot_lfd.app.recording.script import HAND_STREAM, write_script
-from cobot_lfd.app.turns import turn_choices
+from cobot_lfd.app.recording.sketch import sketch_episode
 from cobot_lfd.errors import CobotError
 from cobot_lfd.frame import Frame, wrap_angle
-from cobot_lfd.outcome import Outcome, Verdict
-from robots import Arm, load_robot
-from scenes import SceneDescription, World, draw_placements, load_scene, scene_names
+from scenes import SceneDescription, draw_placements, load_scene, scene_names
 
 ROBOT = "panda"
 FIRST_SEED = 20_000  # Of the first scene of the first set; nothing was tuned on these.
-SAMPLE_PERIOD = 0.01  # [s]
 MOST_SPREAD = 0.004, np.deg2rad(4.0)  # Of an object as seen from its frame over the demonstrations [m], [rad]
 FARTHEST = 0.01  # [m] of a frame whose direction is not known from the middle of its object
 
@@ -164,47 +160,8 @@ def _spread(frames: Sequence[Frame], truth: Sequence[Frame], symmetric: bool) ->
 def _scripted(job: Job, scene: SceneDescription) -> tuple[list[RecordedEpisode], list[dict[str, Frame]]]:
     """Demonstrations as the hand wants them; every set has seeds of its own."""
     first = FIRST_SEED + job.number * job.n_demonstrations
-    pairs = [_demonstrate(job.scene, scene, first + k) for k in range(job.n_demonstrations)]
-    return [episode for episode, _ in pairs], [frames for _, frames in pairs]
-
-
-def _demonstrate(name: str, scene: SceneDescription, seed: int) -> tuple[RecordedEpisode, dict[str, Frame]]:
-    """A picture of the scene with the arm, and the hand's path."""
-    robot = load_robot(ROBOT, scene.task.tool)
-    with World(scene, seed) as world:
-        arm = Arm(world.client, robot)
-        picture, frames = world.take_picture(), dict(world.true_frames())
-        script = write_script(
-            scene.task,
-            frames,
-            start=arm.state().world_from_tool,
-            turn=turn_choices(scene.task, frames)[0],
-            maximum_opening=robot.gripper.maximum_opening,
-            time_step=scene.physics.time_step,
-            rng=np.random.default_rng([seed, HAND_STREAM]),
-        )
-    every = max(1, round(SAMPLE_PERIOD / scene.physics.time_step))
-    n = len(script.positions[::every])
-    episode = RecordedEpisode(
-        scene=name,
-        robot=ROBOT,
-        seed=seed,
-        verdict=Verdict(Outcome.SUCCESS, "as the hand wants it; not seen by the physics"),
-        times=np.arange(n, dtype=np.float64) * every * scene.physics.time_step,
-        joint_positions=np.zeros((n, 0)),
-        joint_velocities=np.zeros((n, 0)),
-        joint_torques=np.zeros((n, 0)),
-        tool_positions=script.positions[::every],
-        tool_quaternions=np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)),
-        gripper_openings=script.openings[::every],
-        hand_forces=np.zeros((n, 3)),
-        hand_torques=np.zeros((n, 3)),
-        carrying=script.carrying[::every],
-        picture=picture,
-        detections=(),
-        camera=scene.camera.camera,
-    )
-    return episode, frames
+    pairs = [sketch_episode(job.scene, scene, ROBOT, first + k) for k in range(job.n_demonstrations)]
+    return [episode for episode, _ in pairs], [dict(frames) for _, frames in pairs]
 
 
 def _recorded(job: Job, scene: SceneDescription) -> tuple[list[RecordedEpisode], list[dict[str, Frame]]]:
