@@ -153,6 +153,7 @@ class PathTo:
     """Stands for a model that leads somewhere else."""
 
     method = "test"
+    recognition = None
 
     def __init__(self, model: PathModel, place: Frame, name: str = "container") -> None:
         self.frame_kinds = model.frame_kinds
