@@ -55,6 +55,7 @@ def sketch_episode(
         tool_positions=script.positions[::every],
         tool_quaternions=script.rotations.as_quat()[::every],
         gripper_openings=script.openings[::every],
+        gripper_orders=script.openings[::every],
         hand_forces=np.zeros((n, 3)),
         hand_torques=np.zeros((n, 3)),
         carrying=script.carrying[::every],
