@@ -22,7 +22,9 @@ from cobot_lfd.motion import (
     move,
     time_path,
 )
+from cobot_lfd.motion.time_law import TimeLaw
 from cobot_lfd.motion.timing import METHODS, TimingMethod
+from cobot_lfd.motion.timing_stretch import stretch_to_limits
 from tests.motion_examples import DATA_SHEET, TIGHT, limits_for, random_path, random_waypoints
 
 
@@ -207,3 +209,16 @@ def test_two_timings_of_one_path_are_the_same_to_the_last_bit() -> None:
 
     for method in METHODS:
         assert samples(method).tobytes() == samples(method).tobytes()
+
+
+def test_a_jerk_that_steps_up_between_all_samples_is_stretched_away() -> None:
+    """The hardest moment may lie in a piece that is shorter than the time between two samples."""
+    limits = limits_for(1, 1.0, 1.0, 1.0)
+    starts, jerks = np.array([0.0, 0.50007, 0.50011]), np.array([0.1, 1000.0, 0.0])
+    states = [np.zeros(3)]
+    for duration, jerk in zip(np.diff(starts), jerks, strict=False):
+        s, v, a = states[-1]
+        states.append(np.array([s + v * duration, v + a * duration, a + jerk * duration]))
+    law = TimeLaw(np.append(starts, 1.0), np.array(states), jerks)
+    line = JointPath.through(np.array([[0.0], [1.0]]))
+    assert_allclose(stretch_to_limits(line, law, limits).jerks.max(), 1.0, rtol=1e-3)

@@ -42,7 +42,7 @@ def stretch_to_limits(path: JointPath, law: TimeLaw, limits: JointLimits) -> Tim
     """The law stretched (or compressed) so that the largest ratio of a derivative to its limit is 1."""
     times = np.linspace(0.0, law.duration, N_SAMPLES)
     coarse = local_stretch(path, law, limits, times)
-    near_peak = np.flatnonzero(coarse[:N_SAMPLES] >= (1 - GROWTH) * coarse.max())
+    near_peak = np.flatnonzero(coarse[:N_SAMPLES] >= (1 - GROWTH) * coarse[:N_SAMPLES].max())
     between = times[near_peak, None] + times[1] * np.linspace(-1.0, 1.0, 2 * N_BETWEEN + 1)
     around = local_stretch(path, law, limits, between.ravel())
     peak = (
