@@ -152,15 +152,16 @@ def _told(values: Sequence[float]) -> str:
 
 
 def _memory(contender: Contender, n: int) -> None:
-    """Memory of one worker after a tenth of the episodes, and its growth from there to the end."""
-    trials = list(_plan(contender, n).trials())
-    with WorkerProcesses(1, time_limit=300.0) as executor:
-        sizes = [executor.submit(_resident_after, trial).result() for trial in trials]
-    after_warming = sizes[max(0, n // 10 - 1)]
-    growth = sizes[-1] / after_warming - 1
-    print(
-        f"memory of a worker over {n} episodes: {after_warming:.0f} MB to {sizes[-1]:.0f} MB ({growth:+.1%})"
-    )
+    """Memory of one worker in each tenth of the episodes, told as it goes on: a run may take hours."""
+    with WorkerProcesses(1, time_limit=3600.0) as executor:
+        sizes: list[float] = []
+        for trial in _plan(contender, n).trials():
+            sizes.append(executor.submit(_resident_after, trial).result())
+            if len(sizes) % max(1, n // 10) == 0:
+                print(f"memory of a worker after {len(sizes)} episodes: {sizes[-1]:.0f} MB", flush=True)
+    warm = sizes[n // 10 :]
+    least, most = min(warm), max(warm)
+    print(f"from {n // 10} to {n} episodes: {least:.0f} to {most:.0f} MB ({most / least - 1:+.1%})")
 
 
 def _resident_after(trial: Trial) -> float:
