@@ -41,6 +41,7 @@ class SceneDescription(DescriptionModel):
         physics: How the simulation runs.
         table: The table.
         objects: Name to object.
+        distractors: How many more things stand on the table, of which nobody is told.
         camera: The camera.
         light: The light.
         task: What is to be done.
@@ -53,6 +54,7 @@ class SceneDescription(DescriptionModel):
     physics: Physics = Physics()
     table: Table
     objects: Annotated[Mapping[str, ObjectDescription], Field(min_length=1)]
+    distractors: Annotated[int, Field(ge=0, le=20)] = 0
     camera: CameraDescription
     light: Light = Light()
     task: Task

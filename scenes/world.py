@@ -14,12 +14,15 @@ from cobot_lfd.pose import Pose
 from cobot_lfd.quiet import quiet_output
 from scenes.bodies import add_object, add_table, object_pose, place_object
 from scenes.description import SceneDescription
+from scenes.distractors import add_distractors
 from scenes.placement import draw_placements
 from scenes.printed import printed_faces
 from scenes.prints import Print
 from scenes.rendering import Picture, Renderer, load_renderer, take_picture
 from scenes.view import CameraDescription, Light
 from scenes.watch import Watch
+
+_SENSOR_STREAM, _DISTRACTOR_STREAM = 1, 3  # keep their chance apart from that of the layout
 
 
 class World:
@@ -31,6 +34,7 @@ class World:
         bodies: Name of an object to its body's number in the client.
         table: The table's body number in the client.
         renderer: What draws its pictures.
+        distractors: Body numbers of what stands about without being part of the scene.
         watch: What has been noticed since the world was built. Only for the success check.
     """
 
@@ -53,7 +57,7 @@ class World:
         self.renderer: Renderer = renderer
         self._step = self.client.stepSimulation  # looked up once: it is called thousands of times
         self._n_steps = 0
-        self._sensor_noise = np.random.default_rng([seed, 1])
+        self._sensor_noise = np.random.default_rng([seed, _SENSOR_STREAM])
         _set_up_physics(self.client, description)
         self.table = add_table(self.client, description.table)
         placements = draw_placements(description, np.random.default_rng(seed))
@@ -61,6 +65,9 @@ class World:
             {name: add_object(self.client, description.objects[name], at) for name, at in placements.items()}
         )
         self._printed_faces = printed_faces(description)
+        self.distractors = add_distractors(
+            self.client, description, placements, np.random.default_rng([seed, _DISTRACTOR_STREAM])
+        )
         self.watch = Watch(self.client, description, self.bodies)
 
     def __enter__(self) -> Self:

@@ -195,7 +195,8 @@ def test_the_number_of_demonstrations_is_a_perturbation() -> None:
 
 def test_a_perturbed_scene_differs_where_it_was_asked_to() -> None:
     assert Perturbation().of_scene(SCENE) == SCENE
-    harder = Perturbation(friction=0.5, range=1.2, camera_noise=4.0, light=0.5).of_scene(SCENE)
+    harder = Perturbation(friction=0.5, range=1.2, camera_noise=4.0, light=0.5, distractors=3).of_scene(SCENE)
+    assert harder.distractors == 3
     cube, before = harder.objects["cube"], SCENE.objects["cube"]
     assert cube.friction == 0.5 * before.friction
     assert_allclose(np.ptp(cube.place.x), 1.2 * np.ptp(before.place.x))
@@ -220,13 +221,14 @@ def test_the_arms_manner_is_a_perturbation(plan: Plan) -> None:
 
 def test_detection_noise_has_the_size_that_is_asked_for() -> None:
     seen = detection()
-    view = View(np.zeros((2, 2, 3), np.uint8), (seen,), ())
+    view = View(np.zeros((2, 2, 3), np.uint8), (seen,), (), (seen,))
     noise = Perturbation(detection_noise_mm=3.0, detection_noise_deg=2.0)
     frames = [noise.of_view(view, seed).detections[0].frame for seed in range(2000)]
     shifts = np.array([frame.position - seen.frame.position for frame in frames])
     assert_allclose(shifts.std(axis=0), 0.003, rtol=0.1)  # [m]
     turns = [frame.angle - seen.frame.angle for frame in frames]
     assert_allclose(np.rad2deg(np.std(turns)), 2.0, rtol=0.1)
+    assert len(noise.of_view(view, 0).others) == 1
     again = noise.of_view(view, 7).detections[0].frame
     assert_allclose(again.position, frames[7].position, rtol=0, atol=0)
 
@@ -241,14 +243,14 @@ def test_a_plan_file_says_what_the_options_say(model_file: Path, tmp_path: Path)
     file = tmp_path / "plan.toml"
     file.write_text(
         f'models = ["{model_file}"]\nscene = ["pick_and_place"]\nepisodes = 2\nseed = 5\n'
-        "[sweep]\ndetection_noise_mm = [0, 2]\n"
+        "[sweep]\ndetection_noise_mm = [0, 2]\ndistractors = [0, 5]\n"
     )
     options = PlanOptions(
         models=(model_file,),
         scene=("pick_and_place",),
         episodes=2,
         seed=5,
-        sweep=Sweep(detection_noise_mm=(0.0, 2.0)),
+        sweep=Sweep(detection_noise_mm=(0.0, 2.0), distractors=(0, 5)),
     )
     assert PlanOptions.read(file).plan() == options.plan()
     file.write_text('scene = ["pick_and_place"]\nepisode = 3\n')
@@ -263,6 +265,10 @@ def test_a_plan_file_says_what_the_options_say(model_file: Path, tmp_path: Path)
         ({"models": (Path("none.npz"),)}, "none.npz"),
         ({"models": ()}, "there is nothing to evaluate"),
         ({"method": ("line",)}, "say where they are: --demos FOLDER"),
+        (
+            {"sweep": Sweep(distractors=(99,))},
+            "--distractors is 99: input should be less than or equal to 20",
+        ),
         ({"sweep": Sweep(friction=(0.0,))}, "--friction is 0.0: input should be greater than 0"),
     ],
 )

@@ -30,6 +30,7 @@ class Perturbation(DescriptionModel):
         camera_blur: Standard deviation of the spot that the lens makes of a point [px].
         light: Factor of the lamp's brightness.
         light_turn_deg: Turn of the lamp about the vertical [degrees].
+        distractors: How many things stand about that the detector does not know.
         friction: Factor of all objects' friction.
         range: Factor by which the ranges of the objects' places grow about their middles.
         demonstrations: How many of the demonstrations are learnt from; 0 stands for all.
@@ -44,6 +45,7 @@ class Perturbation(DescriptionModel):
     camera_blur: Annotated[float, Field(ge=0.0, le=20.0)] = 0.0
     light: _Factor = 1.0
     light_turn_deg: Annotated[float, Field(ge=-360.0, le=360.0)] = 0.0
+    distractors: Annotated[int, Field(ge=0, le=20)] = 0
     friction: _Factor = 1.0
     range: _Factor = 1.0
     demonstrations: Annotated[int, Field(ge=0)] = 0
@@ -66,6 +68,7 @@ class Perturbation(DescriptionModel):
         _dim_and_turn(content["light"], self.light, np.deg2rad(self.light_turn_deg))
         content["camera"]["sensor"]["noise"] += self.camera_noise
         content["camera"]["lens"]["blur"] += self.camera_blur
+        content["distractors"] += self.distractors
         content["table"]["friction"] *= self.friction
         for item in content["objects"].values():
             item["friction"] = min(5.0, item["friction"] * self.friction)
@@ -80,10 +83,10 @@ class Perturbation(DescriptionModel):
         return replace(
             view,
             detections=tuple(self._misjudged(item, rng) for item in view.detections),
-            others=(),
             learnt=tuple(
                 self._misjudged(item, rng) if isinstance(item, Detection) else item for item in view.learnt
             ),
+            others=tuple(self._misjudged(item, rng) for item in view.others),
         )
 
     def _misjudged(self, seen: Detection, rng: np.random.Generator) -> Detection:
@@ -110,6 +113,7 @@ class Sweep(DescriptionModel):
         camera_blur: Blur of the lens [px].
         light: Factors of the lamp's brightness.
         light_turn_deg: Turns of the lamp about the vertical [degrees].
+        distractors: Numbers of things that stand about and that the detector does not know.
         friction: Factors of all objects' friction.
         range: Factors by which the ranges of the objects' places grow; beyond 1 is beyond what was shown.
         demonstrations: How many of the demonstrations are learnt from; 0 stands for all.
@@ -123,6 +127,7 @@ class Sweep(DescriptionModel):
     camera_blur: tuple[float, ...] = (0.0,)
     light: tuple[float, ...] = (1.0,)
     light_turn_deg: tuple[float, ...] = (0.0,)
+    distractors: tuple[int, ...] = (0,)
     friction: tuple[float, ...] = (1.0,)
     range: tuple[float, ...] = (1.0,)
     demonstrations: tuple[int, ...] = (0,)
