@@ -152,12 +152,12 @@ def _told(values: Sequence[float]) -> str:
 
 
 def _memory(contender: Contender, n: int) -> None:
-    """Memory of one worker in each tenth of the episodes, told as it goes on: a run may take hours."""
+    """Memory of one worker, told as it goes on, since a long run takes hours."""
     with WorkerProcesses(1, time_limit=3600.0) as executor:
         sizes: list[float] = []
         for trial in _plan(contender, n).trials():
             sizes.append(executor.submit(_resident_after, trial).result())
-            if len(sizes) % max(1, n // 10) == 0:
+            if len(sizes) % max(1, n // 40) == 0:
                 print(f"memory of a worker after {len(sizes)} episodes: {sizes[-1]:.0f} MB", flush=True)
     warm = sizes[n // 10 :]
     least, most = min(warm), max(warm)
