@@ -22,6 +22,7 @@ from cobot_lfd.app.report.content import Report, gather
 from cobot_lfd.app.report.html import to_html
 from cobot_lfd.app.report.markdown import to_markdown
 from cobot_lfd.app.report.paired import comparisons_of, mcnemar
+from cobot_lfd.app.report.plots import AXIS_LABELS
 from cobot_lfd.app.report.tables import to_csv, to_json
 from cobot_lfd.app.run_folder import RunFolder
 from cobot_lfd.errors import DataError
@@ -78,6 +79,17 @@ def test_cells_count_by_condition(report: Report) -> None:
         ("good", "detection noise 5 mm"): (14, 20),
         ("bad", "detection noise 5 mm"): (8, 20),
     }
+
+
+def test_the_title_says_what_was_compared(report: Report) -> None:
+    assert report.title == "good and bad in pick_and_place with panda"
+    assert report.runs == ("first run",)
+    assert "<title>Evaluation: good and bad in pick_and_place with panda</title>" in to_html(report)
+
+
+def test_every_perturbation_has_an_axis_with_a_unit() -> None:
+    assert set(AXIS_LABELS) == set(Sweep.model_fields)
+    assert all(re.search(r" \[.+\]$", label) for label in AXIS_LABELS.values())
 
 
 def test_contenders_are_compared_on_the_same_seeds(report: Report) -> None:

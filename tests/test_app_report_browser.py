@@ -27,6 +27,10 @@ FLAGS = (
     "--disable-background-networking",
 )
 
+_SMALLEST_TEXT = """Math.min(...[...document.querySelectorAll("body *")]
+    .filter(e => !e.closest("svg") && [...e.childNodes].some(n => n.nodeType == 3 && n.textContent.trim()))
+    .map(e => parseFloat(getComputedStyle(e).fontSize)))"""
+
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator["Browser"]:
@@ -57,6 +61,11 @@ def test_the_page_fits_and_asks_for_nothing(
     page.goto(page_address)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert faults == []
+    plots = page.locator("svg[role=img]")
+    assert plots.count() == 2
+    assert plots.first.get_attribute("aria-label") == "Success over noise of the seen position [mm]"
+    assert all(plot.bounding_box()["width"] > 0.75 * min(width, 600) for plot in plots.all())  # type: ignore[index]
+    assert page.evaluate(_SMALLEST_TEXT) >= 12  # [px]
     assert [address for address in asked if not address.startswith("data:")] == [page_address]
 
 

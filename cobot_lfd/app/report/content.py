@@ -3,7 +3,7 @@
 import json
 import shlex
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,8 @@ from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.app.run_folder import PROVENANCE, RunFolder
 from cobot_lfd.app.summary import Summary
 from cobot_lfd.errors import DataError
+
+_MOST_NAMES = 3  # that a title can hold
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +43,8 @@ class Report:
     """All that a report says.
 
     Attributes:
-        title: Names of the runs.
+        title: What was compared, where, and by which arm.
+        runs: Names of the runs.
         summary: Of all episodes together.
         planned: Number of episodes in the runs' plans.
         cells: Results by condition.
@@ -52,6 +55,7 @@ class Report:
     """
 
     title: str
+    runs: tuple[str, ...]
     summary: Summary
     planned: int
     cells: tuple[Cell, ...]
@@ -90,7 +94,8 @@ def gather(folders: Sequence[Path]) -> Report:
         )
     results = [episode.result for episode in episodes]
     return Report(
-        title=", ".join(names),
+        title=_title(results),
+        runs=tuple(names),
         summary=Summary.of(results),
         planned=sum(len(run.plan) for run in runs),
         cells=tuple(cells_of(results)),
@@ -99,6 +104,24 @@ def gather(folders: Sequence[Path]) -> Report:
         episodes=tuple(episodes),
         provenance={name: _provenance(run) for name, run in zip(names, runs, strict=True)},
     )
+
+
+def _title(results: Sequence[EpisodeResult]) -> str:
+    """Such as "improved and conventional in pick_and_place with panda"."""
+    contenders = _listed((r.contender for r in results), "contenders")
+    scenes, robots = (
+        _listed((r.scene for r in results), "scenes"),
+        _listed((r.robot for r in results), "arms"),
+    )
+    return f"{contenders} in {scenes} with {robots}"
+
+
+def _listed(names: Iterable[str], kind: str) -> str:
+    """A few names, or the number of many."""
+    different = list(dict.fromkeys(names))
+    if len(different) > _MOST_NAMES:
+        return f"{len(different)} {kind}"
+    return " and ".join([", ".join(different[:-1]), different[-1]] if len(different) > 1 else different)
 
 
 def _names(folders: Sequence[Path]) -> list[str]:

@@ -12,7 +12,7 @@ def to_markdown(report: Report) -> str:
     """The report's tables, and the first failures with the commands that run them again."""
     done = len(report.episodes)
     parts = [
-        f"# Evaluation of {report.title}",
+        f"# Evaluation: {report.title}",
         f"{done} of {report.planned} planned episodes have ended.",
         "## Success",
         _success(report),

@@ -12,16 +12,17 @@ from cobot_lfd.app.results import EpisodeResult
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_UNITS = {
+AXIS_LABELS = {
     "detection_noise_mm": "noise of the seen position [mm]",
     "detection_noise_deg": "noise of the seen angle [°]",
     "camera_noise": "noise of the camera's pixels [of 255]",
     "camera_blur": "blur of the lens [px]",
     "light": "brightness of the lamp [factor]",
     "light_turn_deg": "turn of the lamp [°]",
+    "distractors": "distractors [number]",
     "friction": "friction [factor]",
     "range": "ranges of the objects' places [factor]",
-    "demonstrations": "demonstrations learnt from",
+    "demonstrations": "demonstrations learnt from [number]",
 }
 _UNCHANGED = {"light": 1.0, "friction": 1.0, "range": 1.0}
 _COLOURS = ("#0b6bcb", "#d1622b", "#2b8a3e", "#8a3ffc", "#b3005e", "#5c6770", "#a08000", "#008080")
@@ -57,7 +58,7 @@ def _success_over(name: str, cells: Sequence[Cell]) -> str | None:
     for cell in cells:
         values = dict(cell.condition.perturbation)
         value = values.pop(name, _UNCHANGED.get(name, 0.0))
-        if not values and isinstance(value, int | float) and name in _UNITS:
+        if not values and isinstance(value, int | float) and name in AXIS_LABELS:
             key = (cell.condition.contender, cell.condition.scene, cell.condition.robot)
             lines.setdefault(key, []).append((float(value), cell))
     if not any(len(points) > 1 for points in lines.values()):
@@ -76,10 +77,10 @@ def _success_over(name: str, cells: Sequence[Cell]) -> str | None:
         at, colour = [value + aside for value, _ in points], _COLOURS[i % len(_COLOURS)]
         axes.errorbar(at, rates, yerr=[low, high], marker="o", capsize=4, label=label, color=colour)
     axes.set_ylim(-4, 104)
-    axes.set_xlabel(_UNITS[name])
+    axes.set_xlabel(AXIS_LABELS[name])
     axes.set_ylabel("success [%], 95 % interval")
     axes.legend(frameon=False, fontsize=9)
-    return _svg(figure, f"Success over {_UNITS[name]}")
+    return _svg(figure, f"Success over {AXIS_LABELS[name]}")
 
 
 def _figure(height: float) -> tuple["Figure", Any]:

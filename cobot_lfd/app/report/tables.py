@@ -27,6 +27,7 @@ def to_json(report: Report) -> str:
     """Cells, comparisons, failures with their commands, and where all came from, as one JSON object."""
     content = {
         "title": report.title,
+        "runs": list(report.runs),
         "planned": report.planned,
         "summary": json.loads(report.summary.to_json()),
         "cells": [_cell(cell) for cell in report.cells],
