@@ -22,3 +22,4 @@ from scenes.task import YawRule as YawRule
 from scenes.variants import variant_names as variant_names
 from scenes.view import CameraDescription as CameraDescription
 from scenes.world import World as World
+from scenes.world import connect as connect

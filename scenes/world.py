@@ -25,6 +25,12 @@ from scenes.watch import Watch
 _SENSOR_STREAM, _DISTRACTOR_STREAM = 1, 3  # keep their chance apart from that of the layout
 
 
+def connect(*, window: bool = False) -> BulletClient:
+    """A simulation, with a window on the display or without one, in which worlds can be built."""
+    with quiet_output():
+        return BulletClient(pybullet.GUI if window else pybullet.DIRECT)
+
+
 class World:
     """A simulated table with objects. Use it in a ``with`` statement; it ends with it.
 
@@ -39,7 +45,13 @@ class World:
     """
 
     def __init__(
-        self, description: SceneDescription, seed: int, *, renderer: Renderer = "tiny", window: bool = False
+        self,
+        description: SceneDescription,
+        seed: int,
+        *,
+        renderer: Renderer = "tiny",
+        window: bool = False,
+        client: BulletClient | None = None,
     ) -> None:
         """Build the world.
 
@@ -49,12 +61,15 @@ class World:
             renderer: What draws the pictures: "tiny" needs nothing, "egl" is faster and draws other colours.
             window: Whether the simulator opens a window on the display; there can be one in a process, and
                 every call then may wait for its picture.
+            client: A simulation for one world after the other: it is emptied first, and goes on afterwards.
+                The world is the same to the last bit. By default it has one of its own, which ends with it.
         """
         self.description = description
         with quiet_output():
-            self.client = BulletClient(pybullet.GUI if window else pybullet.DIRECT)
+            self.client = connect(window=window) if client is None else client
             self._plugin = load_renderer(self.client, renderer)
         self.renderer: Renderer = renderer
+        self._is_lent = client is not None
         self._step = self.client.stepSimulation  # looked up once: it is called thousands of times
         self._n_steps = 0
         self._sensor_noise = np.random.default_rng([seed, _SENSOR_STREAM])
@@ -81,11 +96,12 @@ class World:
         self.close()
 
     def close(self) -> None:
-        """End the simulation; the world cannot be used afterwards."""
+        """End the simulation, unless it was lent; the world cannot be used afterwards."""
         with quiet_output():
             if self._plugin is not None:
                 self.client.unloadPlugin(self._plugin)
-            self.client.disconnect()
+            if not self._is_lent:
+                self.client.disconnect()
 
     @property
     def time(self) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +54,7 @@ class Bench:
         misjudge: What becomes of a view before anything is done with it, given the seed; None: nothing.
         compliance: How the arm gives way during the carry; None: not at all.
         timing: How the motion along the path gets its times.
+        client: The simulation in which episodes run one after the other; None: one of its own for each.
     """
 
     scene_name: str
@@ -65,6 +67,7 @@ class Bench:
     misjudge: Callable[[View, int], View] | None = None
     compliance: Compliance | None = None
     timing: TimingMethod = "simple"
+    client: Any = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +127,7 @@ def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | 
     notes = _Notes()
     with ExitStack() as ending:
         with notes.timed("build"):
-            world = ending.enter_context(World(bench.scene, seed))
+            world = ending.enter_context(World(bench.scene, seed, client=bench.client))
             arm = Arm(world.client, bench.robot, visible=film is not None or _in_picture(bench))
         true_frames = world.true_frames()
         with notes.timed("perceive"):

@@ -5,6 +5,7 @@ from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from traceback import format_exception_only
+from typing import Any
 
 from cobot_lfd.app.compliance import Compliance
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
@@ -19,7 +20,7 @@ from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.errors import CobotError
 from cobot_lfd.outcome import Outcome, Verdict
 from robots import Kinematics, load_robot
-from scenes import load_scene
+from scenes import connect, load_scene
 
 _PICTURE_WIDTH = 480  # [px]; readable on a phone, and a thousand of them in a report of a few megabytes
 
@@ -111,7 +112,14 @@ def _bench(scene: str, robot: str, perturbation: Perturbation, contender: Conten
         misjudge=perturbation.of_view,
         compliance=Compliance() if perturbation.compliant else None,
         timing=perturbation.timing,
+        client=_simulation(),
     )
+
+
+@lru_cache(maxsize=1)
+def _simulation() -> Any:
+    """One for all episodes of this process: to empty it takes far less time than to start another."""
+    return connect()
 
 
 @lru_cache(maxsize=8)
