@@ -88,7 +88,8 @@ def test_the_title_says_what_was_compared(report: Report) -> None:
 
 
 def test_every_perturbation_has_an_axis_with_a_unit() -> None:
-    assert set(AXIS_LABELS) == set(Sweep.model_fields)
+    numbers = {name for name, value in Sweep() if not isinstance(value[0], bool | str)}
+    assert set(AXIS_LABELS) == numbers
     assert all(re.search(r" \[.+\]$", label) for label in AXIS_LABELS.values())
 
 
