@@ -1,8 +1,9 @@
 """What a thing looks like, learnt from several pictures of it: outline, height, colour and symmetry.
 
 Nothing is told about the thing. It is read as an upright one, whose upper side is as bright as most of it
-and has walls below, if that explains the regions that show it; else as flat. Its outline is that of the mean
-silhouette of its upper side over all pictures; outline and poses are found from one another.
+and has walls below, if that explains the regions that show it; else as a rounded one, whose silhouette lies
+at half the height that explains them best. Its outline is that of the mean silhouette over all pictures;
+outline and poses are found from one another.
 """
 
 from collections.abc import Sequence
@@ -26,8 +27,8 @@ from perception.picture import Picture
 
 _BRIGHT = 0.85  # Of the usual brightness; a face that is darker is a wall.
 _LEAST_TOP = 0.35  # Of a region's area that its upper side covers at least.
-_MOST_UNEXPLAINED = 0.06  # Of the regions' area; what an upright thing explains worse is read as flat.
-_N_ROUNDS = 3  # In which outline and poses are found from one another.
+_MOST_UNEXPLAINED = 0.06  # Of the regions' area; what an upright thing explains worse is rounded.
+_N_ROUNDS = 2  # In which outline and poses are found from one another.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,18 +65,20 @@ def describe(
     z, unexplained = height(tops, things, camera)
     small = any(t.region.area < _LEAST_TOP * w.region.area for t, w in zip(tops, things, strict=True))
     upright = unexplained < _MOST_UNEXPLAINED and not small
-    return _outlined(name, pictures, tops if upright else things, camera, z if upright else 0.0)
+    if upright:
+        return _outlined(name, pictures, tops, camera, z, 0.0)
+    return _outlined(name, pictures, things, camera, 0.5 * z, 0.5 * z)
 
 
 def _outlined(
-    name: str, pictures: Sequence[Picture], things: Sequence[Thing], camera: Camera, z: float
+    name: str, pictures: Sequence[Picture], things: Sequence[Thing], camera: Camera, z: float, base_z: float
 ) -> Description | None:
-    """The outline at a height, found from poses and they from it, in turn."""
+    """The outline at a height, walls below it down to another, found from poses and they from it, in turn."""
     frames, half = align(things, camera)
     frames = [_lifted(frame, camera, z) for frame in frames]
     description = None
     for _ in range(_N_ROUNDS):
-        model = _model(name, mean_silhouette(things, camera, frames, z, half), things)
+        model = _model(name, mean_silhouette(things, camera, frames, z, half), things, base_z)
         if model is None:
             break
         fits = [_fit(p, t, model, camera, f) for p, t, f in zip(pictures, things, frames, strict=True)]
@@ -110,7 +113,7 @@ def _lifted(frame: Frame, camera: Camera, z: float) -> Frame:
     return Frame(camera.to_plane(camera.project([*frame.position, 0.0]), z), frame.angle)
 
 
-def _model(name: str, template: Template, things: Sequence[Thing]) -> ObjectModel | None:
+def _model(name: str, template: Template, things: Sequence[Thing], base_z: float) -> ObjectModel | None:
     corners = outline(template)
     if corners is None:
         return None
@@ -122,7 +125,7 @@ def _model(name: str, template: Template, things: Sequence[Thing]) -> ObjectMode
         z=template.z,
         colour=colour,
         symmetry=symmetry(corners),
-        base_z=0.0,
+        base_z=base_z,
     )
 
 

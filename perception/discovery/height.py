@@ -14,12 +14,12 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from perception.discovery.propose import Thing
 
-_HEIGHTS = np.arange(0.0, 0.1201, 0.0025)  # That are tried [m].
+_HEIGHTS = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12)
+"""That are tried first [m]."""
+_FINER = (0.005, 0.0025)  # Steps to either side of the best that are tried then [m].
 _N_LEVELS = 6  # Of the walls, from the upper side down to the table.
 _MARGIN = 4  # Around a region [px].
-_NO_WORSE = (
-    1.02  # Of several heights that explain the regions as well but for this factor the lowest is taken.
-)
+_NO_WORSE = 1.02  # The lowest of the heights that explain the regions as well but for this factor is taken.
 
 
 def height(tops: Sequence[Thing], whole: Sequence[Thing], camera: Camera) -> tuple[float, float]:
@@ -33,11 +33,17 @@ def height(tops: Sequence[Thing], whole: Sequence[Thing], camera: Camera) -> tup
     Returns:
         The height [m], and how much of the regions it does not explain, as a share of their area.
     """
-    wrong = np.array(
-        [sum(_unexplained(t, w, camera, z) for t, w in zip(tops, whole, strict=True)) for z in _HEIGHTS]
-    )
-    lowest = int(np.flatnonzero(wrong <= _NO_WORSE * wrong.min() + 1e-9)[0])
-    return float(_HEIGHTS[lowest]), float(wrong[lowest] / sum(thing.region.area for thing in whole))
+    pairs = list(zip(tops, whole, strict=True))
+    wrong: dict[float, float] = {}
+    heights: tuple[float, ...] = _HEIGHTS
+    for step in (*_FINER, None):
+        wrong |= {
+            z: sum(_unexplained(top, thing, camera, z) for top, thing in pairs) for z in heights if z >= 0
+        }
+        best = min(wrong, key=wrong.__getitem__)
+        heights = () if step is None else (best - step, best + step)
+    lowest = min(z for z, value in wrong.items() if value <= _NO_WORSE * wrong[best] + 1e-9)
+    return lowest, wrong[lowest] / sum(thing.region.area for thing in whole)
 
 
 def _unexplained(top: Thing, whole: Thing, camera: Camera, z: float) -> float:

@@ -27,7 +27,10 @@ _MOST_RESIDUAL = 1.2  # Root mean square distance of the edges from the outline 
 
 
 def recognise(
-    picture: Picture, camera: Camera, models: Sequence[ObjectModel]
+    picture: Picture,
+    camera: Camera,
+    models: Sequence[ObjectModel],
+    things: Sequence[Thing] | None = None,
 ) -> tuple[Detection | NotSeen, ...]:
     """Find things in a picture that were described before.
 
@@ -35,6 +38,7 @@ def recognise(
         picture: Red, green, blue, shape (height, width, 3).
         camera: The camera that took it.
         models: What the things look like; their colours are those of pictures, in shares of 255.
+        things: What stands out in the picture, where that is known; by default it is looked for.
 
     Returns:
         For each model what was seen, or why not, in the models' order.
@@ -44,7 +48,7 @@ def recognise(
     """
     if not models:
         return ()
-    things = propose(picture, camera)
+    things = propose(picture, camera) if things is None else things
     tried = [[_try(picture, camera, model, thing) for thing in things] for model in models]
     chosen = _assigned(models, tried)
     return tuple(

@@ -58,7 +58,7 @@ def find_candidates(pictures: Sequence[Picture], camera: Camera) -> Candidates:
     learnt = [(kind, _learn(kind, pictures, things, camera)) for kind in kinds if kind.n_seen > 1]
     known = [(kind, found) for kind, found in learnt if found is not None]
     models = _named([(kind, found.model) for kind, found in known])
-    seen = [recognise(picture, camera, models) for picture in pictures]
+    seen = [recognise(p, camera, models, shown) for p, shown in zip(pictures, things, strict=True)]
     tracks = [base_track(BASE, len(pictures))]
     tracks += [Track(model.name, tuple(found[i] for found in seen)) for i, model in enumerate(models)]
     return Candidates(
