@@ -8,6 +8,7 @@ from typing import Self
 
 import numpy as np
 
+from cobot_lfd.appearance import Appearance
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.errors import ModelError
@@ -31,6 +32,7 @@ from cobot_lfd.learning.settings import LearningSettings, settings_for
 from cobot_lfd.recognition import LearntFrame, Part, Recognition
 
 STORED: tuple[type, ...] = (
+    Appearance,
     ApproachAngles,
     Certainty,
     Course,

@@ -17,6 +17,7 @@ from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
 from perception.assignment import quality
+from perception.discovery.face import with_face
 from perception.discovery.height import height
 from perception.discovery.polygon import outline, symmetry
 from perception.discovery.propose import Thing
@@ -84,7 +85,11 @@ def _outlined(
         fits = [_fit(p, t, model, camera, f) for p, t, f in zip(pictures, things, frames, strict=True)]
         frames = [fit.frame if fit else frame for fit, frame in zip(fits, frames, strict=True)]
         description = Description(model, float(np.mean([quality(fit) if fit else 0.0 for fit in fits])))
-    return None if description is None else replace(description, model=_straightened(description.model))
+    if description is None:
+        return None
+    model, turn = _straightened(description.model)
+    turned = [frame @ turn for frame in frames]
+    return replace(description, model=with_face(model, pictures, things, turned, camera))
 
 
 def _upper_side(picture: Picture, thing: Thing) -> Thing:
@@ -129,11 +134,12 @@ def _model(name: str, template: Template, things: Sequence[Thing], base_z: float
     )
 
 
-def _straightened(model: ObjectModel) -> ObjectModel:
-    """The same thing with its longest side along the frame's x axis."""
+def _straightened(model: ObjectModel) -> tuple[ObjectModel, Frame]:
+    """The same thing with its longest side along the frame's x axis, and the new frame in the old one."""
     sides = np.roll(model.outline, -1, axis=0) - model.outline
     x, y = sides[int(np.linalg.norm(sides, axis=1).argmax())]
-    return replace(model, outline=Frame(np.zeros(2), float(np.arctan2(y, x))).localise(model.outline))
+    turn = Frame(np.zeros(2), float(np.arctan2(y, x)))
+    return replace(model, outline=turn.localise(model.outline)), turn
 
 
 def _middle(corners: Array) -> Array:

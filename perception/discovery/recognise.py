@@ -14,6 +14,7 @@ from perception.assignment import quality
 from perception.coarse_pose import guess_poses
 from perception.discovery.palette import shares
 from perception.discovery.propose import Thing, propose
+from perception.feature_detector import FeatureDetector
 from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture
@@ -46,15 +47,27 @@ def recognise(
     Raises:
         ValueError: If the picture is not one of this camera.
     """
-    if not models:
-        return ()
     things = propose(picture, camera) if things is None else things
+    outlined = [model for model in models if model.appearance is None]
+    faces = tuple(model.appearance for model in models if model.appearance is not None)
+    found = {item.name: item for item in _by_outline(picture, camera, outlined, things)}
+    if faces:
+        found |= {item.name: item for item in FeatureDetector(faces).detect(picture, camera)}
+    return tuple(found[model.name] for model in models)
+
+
+def _by_outline(
+    picture: Picture, camera: Camera, models: Sequence[ObjectModel], things: Sequence[Thing]
+) -> list[Detection | NotSeen]:
+    """For each model what was seen, or why not."""
+    if not models:
+        return []
     tried = [[_try(picture, camera, model, thing) for thing in things] for model in models]
     chosen = _assigned(models, tried)
-    return tuple(
+    return [
         _detection(model, camera, fit) if fit is not None else NotSeen(model.name, _why_not(things, results))
         for model, fit, results in zip(models, chosen, tried, strict=True)
-    )
+    ]
 
 
 def _try(picture: Picture, camera: Camera, model: ObjectModel, thing: Thing) -> OutlineFit | str:

@@ -86,7 +86,12 @@ def _named(kinds: Sequence[tuple[Kind, ObjectModel]]) -> list[ObjectModel]:
     """A model for each thing: one of a kind, or several that look the same."""
     repeated = [model for kind, model in kinds for _ in range(kind.count)]
     names = names_of([255.0 * model.colour for model in repeated])
-    return [replace(model, name=name) for model, name in zip(repeated, names, strict=True)]
+    return [_called(model, name) for model, name in zip(repeated, names, strict=True)]
+
+
+def _called(model: ObjectModel, name: str) -> ObjectModel:
+    face = None if model.appearance is None else replace(model.appearance, name=name)
+    return replace(model, name=name, appearance=face)
 
 
 def _stray(kind: Kind, n_pictures: int) -> str:
