@@ -49,7 +49,11 @@ def test_part_and_container_are_kept_and_distractors_dropped() -> None:
 
 def test_a_goal_that_the_camera_does_not_see_is_told_by_the_base() -> None:
     sorting = discover(shown("sorting"), load_scene("sorting").camera.camera)
-    assert set(sorting.kept) == {"base", "blue"}
+    assert set(sorting.kept) == {"base", "blue_2"}  # The smaller of the two boards of one colour.
+    models = sorting.candidates.models
+    assert (
+        np.ptp(models["blue_2"].outline, axis=0).max() < 0.07 < np.ptp(models["blue_1"].outline, axis=0).max()
+    )
     assert sorting.kinds["base"] is FrameKind.ORIENTED
 
 
