@@ -15,6 +15,7 @@ from pebble import ProcessPool
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _LOOK_EVERY = 1.0  # [s] between two looks whether the coordinator still lives
 
 
@@ -28,10 +29,15 @@ class WorkerProcesses(Executor):
     def __init__(self, n_workers: int, *, time_limit: float) -> None:
         """Make ready; processes start with the first task.
 
+        Their linear algebra runs in one thread each, unless the environment says otherwise: more would take
+        the cores from one another, for matrices that are too small to share.
+
         Args:
             n_workers: Number of processes.
             time_limit: For one task, after which its process is killed [s].
         """
+        for name in _THREADS:
+            os.environ.setdefault(name, "1")  # inherited; this process has loaded its libraries already
         self._pool: Any = ProcessPool(
             max_workers=n_workers,
             context=get_context("spawn"),
