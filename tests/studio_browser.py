@@ -16,7 +16,7 @@ from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.launch import Studio, open_studio
 from cobot_lfd.arrays import Array
 
-_FLAGS = (
+FLAGS = (
     "--no-sandbox",
     "--disable-quic",
     "--no-first-run",

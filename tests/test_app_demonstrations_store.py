@@ -20,7 +20,13 @@ from numpy.testing import assert_array_equal
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.episode_file import PULL_UNITS, UNITS, episode_to_bytes
 from cobot_lfd.app.demonstrations.seal import BLOCK_SIZE, seal
-from cobot_lfd.app.demonstrations.store import list_episodes, load_demonstrations, load_episode, save_episode
+from cobot_lfd.app.demonstrations.store import (
+    list_episodes,
+    load_demonstrations,
+    load_episode,
+    require_writable,
+    save_episode,
+)
 from cobot_lfd.camera import Camera
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome
@@ -235,6 +241,16 @@ def read_only_folder() -> Iterator[Path]:
 def test_a_read_only_folder_is_told(read_only_folder: Path) -> None:
     with pytest.raises(DataError, match=r"cannot save an episode in .*: Permission denied\. Choose a folder"):
         save_episode(read_only_folder, episode())
+
+
+def test_a_read_only_folder_is_told_before_anything_is_recorded(read_only_folder: Path) -> None:
+    with pytest.raises(DataError, match=r"cannot save episodes in .*: Permission denied\. Choose a folder"):
+        require_writable(read_only_folder)
+
+
+def test_a_folder_that_can_be_written_is_left_empty(tmp_path: Path) -> None:
+    require_writable(tmp_path / "new" / "demos")
+    assert list((tmp_path / "new" / "demos").iterdir()) == []
 
 
 def test_a_file_in_place_of_the_folder_is_told(tmp_path: Path) -> None:

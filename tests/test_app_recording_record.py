@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from cobot_lfd.app.cli import main
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.store import list_episodes, load_episode
 from cobot_lfd.app.recording.hand import HandAction, ScriptedHand
@@ -50,6 +51,15 @@ def pull(tool: Pose) -> HandAction:
 @pytest.fixture(scope="module")
 def episode(demonstrations_folder: Path) -> RecordedEpisode:
     return load_episode(list_episodes(demonstrations_folder)[0])
+
+
+def test_where_nothing_can_be_kept_nothing_is_recorded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "demos").write_text("not a folder")
+    assert main(["record", "pick_and_place", "--out", str(tmp_path / "demos" / "mine")]) == 2
+    [line] = capsys.readouterr().err.splitlines()
+    assert "cannot save episodes in" in line
 
 
 def test_a_minimum_jerk_movement_is_symmetric_and_starts_and_ends_at_rest() -> None:

@@ -5,10 +5,12 @@ import socket
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
 
 import pytest
 
 from cobot_lfd.app.studio.gate import Gate
+from cobot_lfd.app.studio.launch import Studio, open_studio
 from cobot_lfd.app.studio.server import LOOPBACK, serve
 from cobot_lfd.errors import CobotError
 
@@ -78,6 +80,28 @@ def test_every_gate_has_a_token_of_its_own(gate: Gate) -> None:
 def test_an_address_that_is_not_ours_is_told() -> None:
     with pytest.raises(CobotError, match=r"cannot listen on 192\.0\.2\.1, port any"):
         Gate("192.0.2.1", None, 1)
+
+
+def test_a_studio_for_other_machines_warns_and_gives_an_address_with_a_token(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers: list[int] = []
+
+    def look(studio: Studio) -> None:
+        _, _, place, path = studio.address.split("/", 3)
+        for asked in ("/", f"/{path}"):
+            connection = http.client.HTTPConnection(place, timeout=10)
+            connection.request("GET", asked)
+            answers.append(connection.getresponse().status)
+            connection.close()
+        studio.session.close()
+
+    open_studio("pick_and_place", "panda", tmp_path, first_seed=0, host="127.0.0.2", show=False, started=look)
+    told = capsys.readouterr()
+    assert answers == [403, 303]  # refused without the token; let in with it
+    assert "warning: the page is served on 127.0.0.2" in told.err
+    assert "http://127.0.0.2:" in told.out
+    assert "/?token=" in told.out
 
 
 def test_the_page_listens_on_the_loopback_address_only() -> None:

@@ -1,5 +1,6 @@
 """The studio without a browser: orders, the hand, what is kept, and what is shown."""
 
+import resource
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -162,6 +163,25 @@ def test_the_session_says_what_happened(story: tuple[Path, Listener, dict[str, A
 def test_a_pointer_event_becomes_a_force_at_once(story: tuple[Path, Listener, dict[str, Any]]) -> None:
     _, _, seen = story
     assert np.median(seen["latencies"]) < 0.05  # [s]
+
+
+def test_on_a_full_disk_the_recording_goes_on_until_there_is_room(tmp_path: Path) -> None:
+    listener = Listener()
+    with at_work(tmp_path / "demos", listener) as session:
+        wait_for(lambda: session.mode is Mode.READY)
+        record_a_pull(session)
+        soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, hard))
+        try:
+            session.order(session.stop)
+            wait_for(lambda: any("cannot save" in sentence for sentence in listener.said_so_far))
+            wait_for(lambda: session.mode is Mode.RECORDING)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        session.order(session.stop)
+        wait_for(lambda: session.mode is Mode.STOPPED)
+    [file] = list_episodes(tmp_path / "demos")
+    assert np.ptp(load_episode(file).tool_positions[:, 1]) > 0.05  # [m]; the pull from before is in it
 
 
 def test_a_folder_of_another_task_is_refused(demonstrations_folder: Path) -> None:

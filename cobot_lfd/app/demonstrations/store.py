@@ -49,6 +49,17 @@ def save_episode(folder: Path, episode: RecordedEpisode) -> Path:
     return path
 
 
+def require_writable(folder: Path) -> None:
+    """Complain before anything is recorded, rather than after, where it could not be kept.
+
+    Raises:
+        DataError: If the folder cannot be made or written.
+    """
+    with told(folder, "save episodes in"):
+        folder.mkdir(parents=True, exist_ok=True)
+        write_temporary(folder, b"", ending=_UNFINISHED).unlink()
+
+
 def load_episode(path: Path) -> RecordedEpisode:
     """Read an episode, checking that no bit of it has changed since it was saved.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
-from cobot_lfd.app.demonstrations.store import list_episodes, load_episode, save_episode
+from cobot_lfd.app.demonstrations.store import list_episodes, load_episode, require_writable, save_episode
 from cobot_lfd.app.execute import Observer
 from cobot_lfd.app.perceive import View, perceive
 from cobot_lfd.app.recording.hand import Hand, ScriptedHand
@@ -119,7 +119,9 @@ def record_session(
         DescriptionError: If there is no such scene or robot.
         DataError: If the folder cannot be written, or holds demonstrations of another scene or robot.
     """
+    load_robot(robot_name, load_scene(scene_name).task.tool)
     taken = seeds_in(folder, scene_name, robot_name)
+    require_writable(folder)
     fresh_seeds = (seed for seed in count(first_seed) if seed not in taken)
     episodes = []
     for seed in islice(fresh_seeds, n_episodes):

@@ -14,10 +14,12 @@ class Clock:
     Attributes:
         simulated: Simulated time in all [s].
         lost: Simulated time that was given up because the simulation was too slow, in all [s].
+        pace: Simulated time per real time that is aimed at; 1 is real time.
     """
 
     def __init__(self, time_step: float) -> None:
         self.lost = 0.0
+        self.pace = 1.0
         self._time_step = time_step
         self._simulated = 0.0
         self._start = perf_counter()
@@ -31,13 +33,13 @@ class Clock:
 
     def step(self) -> None:
         """A time step was simulated; wait if that was faster than real time."""
-        self._simulated += self._time_step
+        self._simulated += self._time_step / self.pace
         self.simulated += self._time_step
         ahead = self._simulated - (perf_counter() - self._start)
         if ahead > _AHEAD:
             sleep(ahead)
         elif ahead < -_BEHIND:
-            self.lost -= ahead
+            self.lost -= ahead * self.pace
             self._start -= ahead
         self._mark()
 

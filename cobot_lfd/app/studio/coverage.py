@@ -1,11 +1,12 @@
-"""Which scene to demonstrate next, so that the demonstrations cover positions and directions."""
+"""Which scene to demonstrate next: where the model is unsure, and at first where nothing was shown yet."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cobot_lfd.arrays import Array
+from cobot_lfd.demonstration import Demonstration
+from cobot_lfd.errors import CobotError
 from cobot_lfd.frame import Frame
 from cobot_lfd.learning.model import TaskParameterisedGMM
 from cobot_lfd.learning.suggestion import suggest_demonstration
@@ -13,6 +14,7 @@ from scenes import SceneDescription
 from scenes.placement import draw_placements
 
 _N_CANDIDATES = 60
+_FEWEST = 2  # demonstrations that a model is fitted to
 _DIRECTION_WEIGHT = 0.15  # [m] that an opposite direction counts as much as
 
 
@@ -32,24 +34,25 @@ class NextScene:
 def suggest_next(
     scene: SceneDescription,
     first_seed: int,
-    shown: Sequence[Mapping[str, Frame]],
-    model: TaskParameterisedGMM | None,
+    demonstrations: Sequence[Demonstration],
 ) -> NextScene:
     """The seed whose scene tells most.
 
-    With a model it is the scene after which the model is least uncertain about all others; without one, the
-    scene that is farthest from all that were shown, in the places and directions of its objects.
+    Where a model can be fitted, it is the scene after which the model would be least uncertain about all
+    others; before that, the scene that is farthest from all that were shown, in the places and directions of
+    its objects.
 
     Args:
         scene: The scene.
         first_seed: Candidates have the seeds from this one on.
-        shown: The frames of the demonstrations so far.
-        model: What was learnt from them; None before that.
+        demonstrations: Those so far.
     """
     seeds = range(first_seed, first_seed + _N_CANDIDATES)
     candidates = [dict(draw_placements(scene, np.random.default_rng(seed))) for seed in seeds]
-    if not shown:
-        return NextScene(first_seed, "Nothing is shown yet, so any scene is as good as another.")
+    if not demonstrations:
+        return NextScene(first_seed, "Nothing is learnable yet, so any scene is as good as another.")
+    shown = [demonstration.frames for demonstration in demonstrations]
+    model = _fitted(demonstrations)
     if model is not None:
         suggestion = suggest_demonstration(model, candidates, shown)
         reason = suggestion.reason.replace(f"Scene {suggestion.index}", "It")
@@ -58,6 +61,16 @@ def suggest_next(
     nearest = distances.sum(axis=2).min(axis=1)
     best = int(nearest.argmax())
     return NextScene(seeds[best], _reason(candidates[best], shown))
+
+
+def _fitted(demonstrations: Sequence[Demonstration]) -> TaskParameterisedGMM | None:
+    """What can be learnt so far; None where it is not enough."""
+    if len(demonstrations) < _FEWEST:
+        return None
+    try:
+        return TaskParameterisedGMM.fit(demonstrations)
+    except CobotError:
+        return None
 
 
 def _distances(a: Mapping[str, Frame], b: Mapping[str, Frame]) -> list[float]:
@@ -86,8 +99,3 @@ def _reason(frames: Mapping[str, Frame], shown: Sequence[Mapping[str, Frame]]) -
 def _turn(a: float, b: float) -> float:
     """Angle between two directions [rad]."""
     return float(abs(np.angle(np.exp(1j * (a - b)))))
-
-
-def path_in_scene(path: Array, seen_from: Frame, here: Frame) -> Array:
-    """A path [m], shape (M, 2), as one frame saw it, laid out from where that frame is now."""
-    return here.apply(seen_from.localise(path))

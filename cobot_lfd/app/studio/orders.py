@@ -56,7 +56,7 @@ class Orders:
         return cls(
             start=Order("Start", "R", session.start),
             stop=Order("Stop", "T", session.stop),
-            next_scene=Order("Next scene", "N", session.next_scene),
+            next_scene=Order("Keep, next scene", "N", session.next_scene),
             undo=Order("Undo", "Z", session.undo),
             gripper=Order("Close or open the gripper", "G", lambda: stage.hand.close_or_open()),
             lower=Order("Lower", "S", lambda: stage.hand.lower()),

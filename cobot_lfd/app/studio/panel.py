@@ -10,10 +10,10 @@ from cobot_lfd.app.perceive import View
 from cobot_lfd.app.pictures.draw import draw_detections
 from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.kept import Kept
+from cobot_lfd.app.studio.orders import Order, Orders
 from cobot_lfd.app.studio.session import Session
 from scenes import World, object_models
 
-_TURN = np.deg2rad(10.0)
 WORLD = "where they were"
 _NONE = "none"
 _BUSY = (Mode.WORKING, Mode.REPLAYING, Mode.TRYING)
@@ -23,7 +23,7 @@ class Panel:
     """Buttons, each of which orders one thing, and what there is to read."""
 
     def __init__(self, server: viser.ViserServer, session: Session) -> None:
-        self._server, self._session = server, session
+        self._server, self._session, self._orders = server, session, Orders.of(session)
         gui = server.gui
         self._status = gui.add_markdown("")
         self._clock = gui.add_markdown("")
@@ -62,7 +62,7 @@ class Panel:
     def show_session(self, session: Session) -> None:
         """Show mode, list and model."""
         mode = session.mode
-        self._status.content = f"### {'● ' if mode is Mode.RECORDING else ''}{mode.value}"
+        self._status.content = f"**{'● ' if mode is Mode.RECORDING else ''}{mode.value}**"
         recording, busy = mode is Mode.RECORDING, mode in _BUSY
         self._start.disabled, self._stop.disabled = recording or busy, not recording
         self._discard.disabled = session.last is None or busy
@@ -90,13 +90,13 @@ class Panel:
         self._clock.content = f"physics {pace} · t = {seconds:.2f} s{joints}"
 
     def _add_recording(self) -> None:
-        session = self._session
-        self._start = self._button("Start", session.start, "player-record", "R")
-        self._stop = self._button("Stop", session.stop, "player-stop", "T")
-        self._next = self._button("Keep, next scene", session.next_scene, "check", "N")
-        self._redo = self._button("Redo", session.redo, "repeat", None)
-        self._discard = self._button("Discard", session.discard_last, "trash", None)
-        self._undo = self._button("Undo", session.undo, "arrow-back-up", "Z")
+        session, orders = self._session, self._orders
+        self._start = self._order(orders.start, "player-record")
+        self._stop = self._order(orders.stop, "player-stop")
+        self._next = self._order(orders.next_scene, "check")
+        self._redo = self._button("Redo", session.redo, "repeat")
+        self._discard = self._button("Discard", session.discard_last, "trash")
+        self._undo = self._order(orders.undo, "arrow-back-up")
 
     def _add_hand(self) -> None:
         session = self._session
@@ -108,13 +108,10 @@ class Panel:
         async def _(_: Any) -> None:
             session.stage.hand.guide = bool(guide.value)
 
-        def hand(name: str, *arguments: float) -> Callable[[], None]:
-            return lambda: getattr(session.stage.hand, name)(*arguments)
-
-        self._button("Close or open the gripper", hand("close_or_open"), "hand-grab", "G")
-        self._group("Tool", {"Lower [S]": hand("lower"), "Lift [W]": hand("lift")})
-        turns = {"left [Q]": hand("turn", _TURN), "right [E]": hand("turn", -_TURN)}
-        self._group("Turn", turns | {"to the part [A]": session.stage.align})
+        orders = self._orders
+        self._order(orders.gripper, "hand-grab")
+        self._group("Tool", (orders.lower, orders.lift))
+        self._group("Turn", (orders.left, orders.right, orders.align))
 
     def _add_kept(self) -> None:
         session, gui = self._session, self._server.gui
@@ -124,27 +121,26 @@ class Panel:
         def with_chosen(what: Callable[[int], None]) -> Callable[[], None]:
             return lambda: what(int(self._chosen.value)) if self._chosen.value != _NONE else None
 
-        self._button("Replay", with_chosen(session.replay), "player-play", None)
-        self._button("Discard this one", with_chosen(session.discard), "trash", None)
+        self._button("Replay", with_chosen(session.replay), "player-play")
+        self._button("Discard this one", with_chosen(session.discard), "trash")
         self._overlay = gui.add_dropdown("Paths", [WORLD, _NONE], hint="Seen from which frame.")
 
     def _add_learning(self) -> None:
-        session = self._session
-        self._learn = self._button("Learn", session.learn, "school", "L")
-        self._try = self._button("Let the arm try", session.try_it, "robot", "Y")
-        self._button("Stop the arm", lambda: None, "hand-stop", "X")
+        self._learn = self._order(self._orders.learn, "school")
+        self._try = self._order(self._orders.attempt, "robot")
+        self._order(self._orders.halt, "hand-stop")
         self._learnt = self._server.gui.add_markdown(_UNLEARNT)
 
-    def _group(self, label: str, choices: dict[str, Callable[[], None]]) -> None:
-        """Small buttons in a row; each name ends with its key."""
-        group = self._server.gui.add_button_group(label, tuple(choices))
+    def _group(self, label: str, orders: tuple[Order, ...]) -> None:
+        """Small buttons in a row."""
+        group = self._server.gui.add_button_group(label, tuple(order.shown for order in orders))
 
         @group.on_click
         async def _(_: Any) -> None:
-            self._session.order(choices[group.value])
+            self._session.order(next(order.do for order in orders if order.shown == group.value))
 
-        for name, what in choices.items():
-            self._key(f"{label}: {name[:-4]}", name[-2], what)
+        for order in orders:
+            self._key(f"{label}: {order.label}", order.key, order.do)
 
     def _key(self, label: str, key: Any, what: Callable[[], None]) -> None:
         """A key that orders something."""
@@ -154,17 +150,20 @@ class Panel:
         async def _(_: Any) -> None:
             self._session.order(what)
 
-    def _button(self, label: str, what: Callable[[], None], icon: Any, key: Any) -> Any:
+    def _order(self, order: Order, icon: Any) -> Any:
         """A button, with a key that does the same."""
-        shown = label if key is None else f"{label} [{key}]"
-        button = self._server.gui.add_button(shown, icon=icon)
+        button = self._button(order.shown, order.do, icon)
+        self._key(order.label, order.key, lambda: None if button.disabled else order.do())
+        return button
+
+    def _button(self, label: str, what: Callable[[], None], icon: Any) -> Any:
+        """A button without a key."""
+        button = self._server.gui.add_button(label, icon=icon)
 
         @button.on_click
         async def _(_: Any) -> None:
             self._session.order(what)
 
-        if key is not None:
-            self._key(label, key, lambda: None if button.disabled else what())
         return button
 
 

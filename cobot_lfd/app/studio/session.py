@@ -3,35 +3,29 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from queue import SimpleQueue
 from time import sleep
 
 from cobot_lfd.app.demonstrations.folder import restore_episode, trash_episode
-from cobot_lfd.app.demonstrations.store import episode_number, save_episode
+from cobot_lfd.app.demonstrations.store import episode_number, require_writable, save_episode
 from cobot_lfd.app.episode import Bench, run_episode
 from cobot_lfd.app.execute import Observer
 from cobot_lfd.app.recording.carry import trimmed_carry
-from cobot_lfd.app.recording.guided_hand import GuidedHand
-from cobot_lfd.app.recording.hand import HandAction
 from cobot_lfd.app.recording.record import seeds_in
 from cobot_lfd.app.recording.recorder import Recorder
 from cobot_lfd.app.recording.replay import replay_in
 from cobot_lfd.app.studio.audience import Audience, Mode
 from cobot_lfd.app.studio.coverage import suggest_next
+from cobot_lfd.app.studio.inbox import Cancelled, Inbox
 from cobot_lfd.app.studio.kept import Kept
 from cobot_lfd.app.studio.stage import Stage
 from cobot_lfd.errors import CobotError
 from cobot_lfd.learning.model import TaskParameterisedGMM
 from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.outcome import Outcome, Verdict
-from robots import ArmState, Kinematics, load_robot
+from robots import Kinematics, load_robot
 from scenes import World, load_scene
 
 _LOOK = 1.5  # [s] for which the end of a replay or a trial stays to be looked at
-
-
-class _Cancelled(Exception):  # noqa: N818 -- no error: the person asked for something else
-    """Ends a replay or a trial early; never leaves this file."""
 
 
 class Session:
@@ -62,13 +56,12 @@ class Session:
 
         Raises:
             DescriptionError: If there is no such scene or robot.
-            DataError: If the folder holds demonstrations of another scene or robot.
+            DataError: If the folder holds demonstrations of another scene or robot, or cannot be written.
         """
         seeds_in(folder, scene_name, robot_name)
         self._scene_name, self._robot_name, self._folder = scene_name, robot_name, folder
         self._audience = audience
-        self._orders: SimpleQueue[Callable[[], None]] = SimpleQueue()
-        self._open = True
+        self._inbox = Inbox()
         self._recorder: Recorder | None = None
         self._discarded: list[int] = []
         self.mode = Mode.WORKING
@@ -78,6 +71,7 @@ class Session:
         self.path: GeneratedPath | None = None
         scene = load_scene(scene_name)
         robot = load_robot(robot_name, scene.task.tool)
+        require_writable(folder)
         self.stage = Stage(scene, robot, self._fresh_seed(first_seed), audience)
 
     @property
@@ -93,29 +87,28 @@ class Session:
     @property
     def is_open(self) -> bool:
         """Whether it goes on."""
-        return self._open
+        return self._inbox.is_open
 
     def order(self, what: Callable[[], None]) -> None:
         """Ask for something to be done, from any thread; it is done between two steps of the simulation."""
-        self._orders.put(what)
+        self._inbox.put(what)
 
     def run(self) -> None:
         """Work until the session is closed."""
         try:
             self.stage.show()
             self._do(self._get_ready)
-            while self._open:
-                self.stage.lead(_UntilOrdered(self.stage.hand, self._orders), self._recorder)
-                while self._open and not self._orders.empty():
-                    self._do(self._orders.get())
+            while self.is_open:
+                self.stage.lead(self._inbox.until_ordered(self.stage.hand), self._recorder)
+                while self.is_open and self._inbox.waits:
+                    self._do(self._inbox.take())
         finally:
             self._keep_incomplete()
             self.stage.close()
 
     def close(self) -> None:
         """End the session; what is being recorded is kept, labelled as incomplete."""
-        self._open = False
-        self.order(lambda: None)
+        self._inbox.close()
 
     def start(self) -> None:
         """Begin to record; where the scene was touched, it is laid out anew first."""
@@ -166,9 +159,9 @@ class Session:
 
     def next_scene(self) -> None:
         """Go on with the scene that tells most, and say why."""
-        shown = [dict(episode.demonstration().frames) for episode in self.kept.good]
+        demonstrations = [episode.demonstration() for episode in self.kept.good]
         first = self._fresh_seed(self.stage.seed + 1)
-        following = suggest_next(self.stage.scene, first, shown, self.model)
+        following = suggest_next(self.stage.scene, first, demonstrations)
         self._audience.said(f"Next scene, seed {following.seed}. {following.reason}")
         self.lay_out(following.seed)
 
@@ -185,13 +178,15 @@ class Session:
         try:
             self.stage.build(episode.seed)
             world, arm = self.stage.world, self.stage.arm
-            result = replay_in(world, arm, episode, "joints", observer=self._watch(self.stage.observe))
+            result = replay_in(
+                world, arm, episode, "joints", observer=self._inbox.interrupting(self.stage.observe)
+            )
             self._audience.said(
                 f"Demonstration {number} again: the tool deviates by {1000 * result.worst:.1f} mm at most; "
                 f"{result.verdict.sentence}."
             )
             sleep(_LOOK)
-        except _Cancelled:
+        except Cancelled:
             self._audience.said("The replay was stopped.")
         self._lay_out(here)
 
@@ -230,7 +225,7 @@ class Session:
                 verdict = run_episode(bench, stage.seed, film=self._film).result.verdict
             self._audience.said(f"The arm tried it: {verdict.sentence}.", bad=not verdict.succeeded)
             sleep(_LOOK)
-        except _Cancelled:
+        except Cancelled:
             self._audience.said("The trial was stopped.")
         self._lay_out(stage.seed)
 
@@ -307,26 +302,4 @@ class Session:
         self._audience.changed(self)
 
     def _film(self, world: World) -> Observer:
-        return self._watch(self.stage.film(world))
-
-    def _watch(self, observer: Observer) -> Observer:
-        """The same observer, which ends what it observes as soon as something else is ordered."""
-
-        def observe() -> None:
-            observer()
-            if not self._orders.empty() or not self._open:
-                raise _Cancelled
-
-        return observe
-
-
-class _UntilOrdered:
-    """The person's hand, until an order waits."""
-
-    def __init__(self, hand: GuidedHand, orders: "SimpleQueue[Callable[[], None]]") -> None:
-        self._hand = hand
-        self._orders = orders
-
-    def act(self, state: ArmState) -> HandAction | None:
-        """What the hand does; None as soon as there is something else to do."""
-        return self._hand.act(state) if self._orders.empty() else None
+        return self._inbox.interrupting(self.stage.film(world))
