@@ -1,5 +1,6 @@
 """cobot-lfd demos: care for recorded demonstrations."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -98,9 +99,7 @@ def trash(folder: Positional[Path], numbers: Positional[tuple[int, ...]]) -> int
         folder: Folder of demonstrations.
         numbers: Numbers of the demonstrations.
     """
-    for number in numbers:
-        print(f"moved to {trash_episode(folder, number)}")
-    return DONE
+    return _move(trash_episode, folder, numbers)
 
 
 def restore(folder: Positional[Path], numbers: Positional[tuple[int, ...]]) -> int:
@@ -110,9 +109,7 @@ def restore(folder: Positional[Path], numbers: Positional[tuple[int, ...]]) -> i
         folder: Folder of demonstrations.
         numbers: Numbers of the demonstrations.
     """
-    for number in numbers:
-        print(f"moved to {restore_episode(folder, number)}")
-    return DONE
+    return _move(restore_episode, folder, numbers)
 
 
 def check(folder: Positional[Path]) -> int:
@@ -186,6 +183,12 @@ _Action = (
 def demos(action: Annotated[_Action, arg(name="")]) -> int:
     """Care for recorded demonstrations: list, show, replay, trash, restore, check, import, export."""
     return action
+
+
+def _move(move: Callable[[Path, int], Path], folder: Path, numbers: tuple[int, ...]) -> int:
+    for number in numbers:
+        print(f"moved to {move(folder, number)}")
+    return DONE
 
 
 def _find(folder: Path, number: int) -> RecordedEpisode:
