@@ -10,6 +10,10 @@ from robots.body import RobotBody
 from robots.gripper import GripperDescription, NoGripper, ParallelGripper, SuctionGripper
 
 _EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
+_SPINNING_FRICTION = 0.002  # [m]
+_OPENING_FRICTION = 0.1
+"""Of fingers that open. The simulator sometimes gives a flat part's contact a normal that is slanted by 40 degrees;
+at the friction of closed fingers a part then jams between them, and they cannot open against 20 N."""
 _LOST = 0.005  # [m]; a part that has come this far off the cup has lost it
 _TOUCHING = 0.002  # [m]; a cup's lip gives way by so much
 _BEHIND = 0.005  # [m]; a face at the axis is looked for from so far inside the cup ...
@@ -54,12 +58,11 @@ class Fingers:
         for finger in body.fingers:
             client.resetJointState(body.id, finger, 0.5 * gripper.maximum_opening)
         self._couple()
-        for link in body.fingertips:
-            client.changeDynamics(body.id, link, lateralFriction=gripper.friction, spinningFriction=0.002)
 
     def command(self, opening: float) -> None:
         """Move the fingers towards an opening [m] with the speed and force that the gripper has."""
         self._closing = opening < _EMPTY_OPENING
+        self._grip_by(self._gripper.friction if self._closing else _OPENING_FRICTION)
         for finger in self._body.fingers:
             self._client.setJointMotorControl2(
                 self._body.id,
@@ -81,6 +84,15 @@ class Fingers:
     def holds_something(self) -> bool:
         """Whether something keeps the fingers apart that are closing, as the gripper's own encoder tells."""
         return self._closing and self.opening() > _EMPTY_OPENING
+
+    def _grip_by(self, friction: float) -> None:
+        for link in self._body.fingertips:
+            self._client.changeDynamics(
+                self._body.id, link, lateralFriction=friction, spinningFriction=_SPINNING_FRICTION
+            )
+            for contact in self._client.getContactPoints(bodyA=self._body.id, linkIndexA=link):
+                for together in (0, 1):  # contacts that last keep the friction with which they began
+                    self._client.setCollisionFilterPair(self._body.id, contact[2], link, contact[4], together)
 
     def _couple(self) -> None:
         """Let the two fingers move by equal amounts, as the belt in the hand makes them."""
