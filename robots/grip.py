@@ -11,9 +11,9 @@ from robots.gripper import GripperDescription, NoGripper, ParallelGripper, Sucti
 
 _EMPTY_OPENING = 0.004  # [m]; closed fingers that are nearer to each other hold nothing
 _SPINNING_FRICTION = 0.002  # [m]
+# Fingers that open do not hold by friction. The simulator sometimes gives a contact a normal that is slanted
+# by 40 degrees; at the friction of closed fingers a part then jams, and 20 N cannot open them.
 _OPENING_FRICTION = 0.1
-"""Of fingers that open. The simulator sometimes gives a flat part's contact a normal that is slanted by 40 degrees;
-at the friction of closed fingers a part then jams between them, and they cannot open against 20 N."""
 _LOST = 0.005  # [m]; a part that has come this far off the cup has lost it
 _TOUCHING = 0.002  # [m]; a cup's lip gives way by so much
 _BEHIND = 0.005  # [m]; a face at the axis is looked for from so far inside the cup ...

@@ -133,3 +133,21 @@ def test_a_cup_does_not_lift_more_than_its_force() -> None:
     arm.grip(0.0)
     move(client, arm, UP)
     assert not lifted(client, box)
+
+
+def test_fingers_hold_by_friction_only_while_they_close() -> None:
+    """Also a part that they touch already: contacts that last keep the friction with which they began."""
+    client = connect()
+    arm = Arm(client, load_robot("panda"))
+    tip = arm.body.fingertips[0]
+    place = client.getLinkState(arm.body.id, tip)[0]
+    shape = client.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.01)
+    part = client.createMultiBody(0.05, shape, basePosition=place)
+    arm.grip(0.0)
+    client.stepSimulation()
+    closing = client.getDynamicsInfo(arm.body.id, tip)[1]
+    assert closing > 1.0
+    assert client.getContactPoints(bodyA=arm.body.id, bodyB=part)
+    arm.grip(0.08)
+    assert not client.getContactPoints(bodyA=arm.body.id, bodyB=part)
+    assert client.getDynamicsInfo(arm.body.id, tip)[1] < 0.2 * closing
