@@ -109,6 +109,9 @@ def test_what_cannot_be_learnt_from_is_refused() -> None:
     blind = replace(episodes[0], picture=np.zeros((0, 0, 3), np.uint8))
     with pytest.raises(DataError, match="has no picture"):
         discover([blind, *episodes[1:]], CAMERA)
+    bare = [replace(e, picture=np.full_like(e.picture, 180)) for e in episodes]
+    with pytest.raises(DataError, match="nothing that stands out from the table"):
+        discover(bare, CAMERA)
     small = replace(episodes[0], picture=episodes[0].picture[::2, ::2])
     with pytest.raises(DataError, match="320 x 240 px; the camera's are 640 x 480"):
         discover([small, *episodes[1:]], CAMERA)

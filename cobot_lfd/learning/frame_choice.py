@@ -71,9 +71,9 @@ def _verdict(frame: int, selection: Selection) -> Verdict:
     n = len(comparison.with_it)
     told = f"{without:.1f} mm without it, {with_it:.1f} mm with it"
     if kept:
-        passed = " and every demonstration passes it closely" if frame in selection.visited else ""
+        passed = "every demonstration passes it closely, and " if frame in selection.visited else ""
         reason = (
-            f"it predicts left-out demonstrations better ({told}; in {comparison.n_helped} of {n}){passed}."
+            f"{passed}it predicts left-out demonstrations better ({told}; in {comparison.n_helped} of {n})."
         )
     else:
         percent, error = 100 * np.expm1(comparison.gain), 100 * comparison.standard_error

@@ -38,8 +38,8 @@ def _find(frame: LearntFrame, camera: Camera, seen: dict[str, Detection | NotSee
     first = seen[frame.parts[0].model.name]
     for part in frame.parts:
         found = seen[part.model.name]
-        # A part that tells the direction less well than the first would turn the frame at random.
-        if isinstance(found, Detection) and part.model.symmetry <= frame.parts[0].model.symmetry:
+        # Seen from a part that looks the same when turned, the frame might be on either side of it.
+        if isinstance(found, Detection) and (part is frame.parts[0] or part.model.symmetry == 1):
             pose = found.frame @ part.thing_from_frame
             return Detection(
                 frame.name, pose, found.symmetry, found.covariance, found.confidence, found.contour

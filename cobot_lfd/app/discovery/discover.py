@@ -84,6 +84,11 @@ def discover(episodes: Sequence[RecordedEpisode], camera: Camera) -> Discovery:
     """
     _require_pictures(episodes, camera)
     candidates = find_candidates([episode.picture for episode in episodes], camera)
+    if not candidates.models:
+        raise DataError(
+            "nothing that stands out from the table reappears in the pictures, so there is no frame to find. "
+            "Name the frames (leave out --frames auto), or record things of other colours than the table's."
+        )
     frames = {motion.members[0]: _frames(motion, candidates.tracks) for motion in candidates.motions}
     usable = {name: found for name, found in frames.items() if not isinstance(found, str)}
     shown = [
@@ -143,7 +148,7 @@ def _frames(motion: Motion, tracks: Mapping[str, Track]) -> list[Frame] | str:
                 seen.frame @ offset
                 for name, offset in zip(motion.members, motion.offsets, strict=True)
                 if isinstance(seen := tracks[name].sightings[n], Detection)
-                and seen.symmetry <= tracks[motion.members[0]].symmetry
+                and (name == motion.members[0] or seen.symmetry == 1)  # else it may lie on either side
             ),
             None,
         )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _N_COLUMNS = 3
+_ROW_HEIGHT = 3.75  # [inch] of a picture with its title
 _DROPPED = "#555555"
 _PATH = "#111111"
 _MARGIN = 14  # [px] between an outline and its name
@@ -44,10 +45,8 @@ def draw_discovery(
     from matplotlib.figure import Figure
 
     n_rows = -(-len(episodes) // _N_COLUMNS)
-    figure = Figure(
-        figsize=(13.0, 3.45 * n_rows + 0.42 * len(discovery.decisions) + 1.2), layout="constrained"
-    )
-    heights = (3.45 * n_rows, 0.42 * len(discovery.decisions) + 1.2)
+    heights = (_ROW_HEIGHT * n_rows, 0.42 * len(discovery.decisions) + 1.2)
+    figure = Figure(figsize=(13.0, sum(heights)), layout="constrained")
     grid = figure.add_gridspec(2, 1, height_ratios=heights)
     above, below = (figure.add_subfigure(grid[row]) for row in range(2))
     colours = _colours(discovery)
@@ -172,9 +171,16 @@ def _draw_figures(axes: Axes, discovery: Discovery, colours: Mapping[str, str]) 
     for tick, decision in zip(axes.get_yticklabels(), decisions, strict=True):
         tick.set_color(colours[decision.name])
         tick.set_fontweight("bold" if decision.fate is Fate.KEPT else "normal")
+    for axis in (axes.xaxis.set_major_formatter, axes.xaxis.set_minor_formatter):
+        axis(_millimetres)
     axes.grid(visible=True, axis="x", which="both", linewidth=0.4, alpha=0.5)
     if labelled:
         axes.legend(loc="lower right", fontsize=8)
+
+
+def _millimetres(value: float, _place: float) -> str:
+    """A label where there is room for one: at 1, 2 and 5 times a power of ten."""
+    return f"{value:g}" if f"{value:e}"[0] in "125" else ""
 
 
 def _short(decision: Decision) -> str:
