@@ -95,8 +95,8 @@ def ages(page: Any, heights: Heights) -> Ages:
     moving = (share > 0.15) & (share < 0.85)
     passed = (history[:, 1] - start) / (end - start)
     inside = (history[:, 0] >= rows[0, 0]) & (passed > 0.02) & (passed < 0.98)
-    when = np.interp(share[moving], passed[inside], history[inside, 0])
-    if not moving.any():
+    if not moving.any() or not inside.any():
         return Ages(np.nan, np.nan, 0)
+    when = np.interp(share[moving], passed[inside], history[inside, 0])
     age = rows[moving, 0] - when
     return Ages(float(np.median(age)), float(age.max()), len(age))
