@@ -18,11 +18,13 @@ from cobot_lfd.learning.settings import (
     CONVENTIONAL,
     IMPROVED,
     PAPER,
+    Alignment,
     Encode,
     Generator,
     Identifier,
     LearningSettings,
     RingDirection,
+    ToldBy,
     settings_for,
 )
 
@@ -41,9 +43,12 @@ OPTIONS = {
     "approach angle": replace(PAPER, ring_direction=RingDirection.SEQUENCE, approach_angle=True),
     "tracking": replace(PAPER, jerk_weight=1e-7),
     "frame selection": replace(PAPER, select_frames=True),
+    "time warping": replace(PAPER, alignment=Alignment.WARP),
+    "time warping, chosen": replace(PAPER, encode=Encode.KERNEL, alignment=Alignment.CHOSEN),
     "choice of K": replace(PAPER, component_choices=(3, 4)),
     "scene regression": replace(PAPER, generator=Generator.COURSE),
-    "scene regression over time": replace(IMPROVED, course=replace(IMPROVED.course, align=False)),
+    "scene regression over time": replace(IMPROVED, course=replace(IMPROVED.course, told_by=(ToldBy.TIME,))),
+    "scene regression, warped": replace(IMPROVED, course=replace(IMPROVED.course, told_by=(ToldBy.WARP,))),
     "no straightening": replace(IMPROVED, course=replace(IMPROVED.course, straighten=False)),
     "no smoothing": replace(IMPROVED, course=replace(IMPROVED.course, smooth=False)),
 }
@@ -53,21 +58,19 @@ def demos(seed: int = 0) -> list[TaskDemonstration]:
     return list(demonstrations(TASKS[2], 6, np.random.default_rng(seed), n_steps=100))
 
 
-def fit(settings: LearningSettings, seed: int = 0, n_components: int = 4) -> TaskParameterisedGMM:
+def fit(settings: LearningSettings, seed: int = 0) -> TaskParameterisedGMM:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="component")
-        return TaskParameterisedGMM.fit(
-            demos(seed), settings=settings, frame_kinds=KINDS, n_components=n_components
-        )
+        return TaskParameterisedGMM.fit(demos(seed), settings=settings, frame_kinds=KINDS)
 
 
-def error(settings: LearningSettings, seeds: range = range(3), n_components: int = 4) -> float:
+def error(settings: LearningSettings, seeds: range = range(3)) -> float:
     """Mean distance from the truth in new scenes [m]."""
     apart = []
     for seed in seeds:
         rng = np.random.default_rng([9, seed])
         scenes = [draw_scene(TASKS[2], rng) for _ in range(20)]
-        paths = fit(settings, seed, n_components).reproduce_many([planar(scene) for scene in scenes])
+        paths = fit(settings, seed).reproduce_many([planar(scene) for scene in scenes])
         truth = [true_path(TASKS[2], scene) for scene in scenes]
         apart += [np.linalg.norm(p.mean - t, axis=1).mean() for p, t in zip(paths, truth, strict=True)]
     return float(np.mean(apart))

@@ -8,6 +8,7 @@ import numpy as np
 from cobot_lfd.errors import DataError
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning.course.course import Course, fit_course
+from cobot_lfd.learning.course.phase import follow
 from cobot_lfd.learning.data import TaskData, TaskDemonstration, collect
 from cobot_lfd.learning.kinds.criteria import fulfilled
 from cobot_lfd.learning.kinds.identification import Certainty, Finding, identify_by_bearing
@@ -18,12 +19,14 @@ from cobot_lfd.learning.product.frame_product import FrameProduct
 from cobot_lfd.learning.product.gather import find_visits, ring_directions
 from cobot_lfd.learning.selection import select_frames
 from cobot_lfd.learning.settings import (
+    Alignment,
     Encode,
     Generator,
     Identifier,
     LearningSettings,
     RingDirection,
 )
+from cobot_lfd.learning.warping import warp_together
 
 N_STEPS = 200
 """Steps to which recordings are brought, except for mixtures, which use every sample."""
@@ -127,9 +130,10 @@ def _generator(
     if settings.generator is Generator.COURSE:
         course = fit_course(data, oriented, settings.course)
         return course, course.notes()
-    chosen, notes = _choose_components(data, oriented, settings, rng)
-    product, more = _frame_product(data, oriented, chosen, rng)
-    return product, [*notes, *more]
+    data, notes = _aligned(data, oriented, settings, rng)
+    chosen, more = _choose_components(data, oriented, settings, rng)
+    product, still_more = _frame_product(data, oriented, chosen, rng)
+    return product, [*notes, *more, *still_more]
 
 
 def _frame_product(
@@ -148,6 +152,38 @@ def _frame_product(
         }
         approach = learn_approach(data.paths, data.scenes, oriented, looks)
     return FrameProduct(encoding, tuple(oriented), visits, approach, settings.jerk_weight), notes
+
+
+def _aligned(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> tuple[TaskData, list[str]]:
+    """The demonstrations with their own timing, or warped to one."""
+    if settings.alignment is Alignment.OFF or len(data.paths) < 3:
+        return data, []
+    warped = warp_together(data)
+    if settings.alignment is Alignment.WARP:
+        return warped, ["The demonstrations are warped to one timing."]
+    errors = [_held_out_error(tried, oriented, settings, rng) for tried in (data, warped)]
+    better, told = (warped, "do") if errors[1] < errors[0] else (data, "do not")
+    note = (
+        f"Warped to one timing the demonstrations {told} predict one another better "
+        f"({1000 * errors[1]:.1f} mm, {1000 * errors[0]:.1f} mm without)."
+    )
+    return better, [note]
+
+
+def _held_out_error(
+    data: TaskData, oriented: list[bool], settings: LearningSettings, rng: np.random.Generator
+) -> float:
+    """Mean distance of each demonstration from what the others predict, whatever the timing [m]."""
+    even = np.linspace(0.0, 1.0, N_STEPS)
+    apart = []
+    for held_out in range(len(data.paths)):
+        product, _ = _frame_product(data.without(held_out), oriented, settings, rng)
+        mean, _ = product.generate(data.scenes.only([held_out]), len(data.times))
+        both = follow(np.concatenate([mean, data.paths[[held_out]]]), even)
+        apart.append(np.linalg.norm(both[0] - both[1], axis=-1).mean())
+    return float(np.mean(apart))
 
 
 def _choose_components(

@@ -1,5 +1,6 @@
 """The learnt model: from demonstrations to paths in new scenes."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from cobot_lfd.detection import ObjectModel
 from cobot_lfd.errors import ModelError
 from cobot_lfd.frame import Frame, FrameKind
 from cobot_lfd.learning import storage
-from cobot_lfd.learning.course.course import Course
+from cobot_lfd.learning.course.course import Course, ToldBy
 from cobot_lfd.learning.course.features import FeatureSet
 from cobot_lfd.learning.course.phase import Progress
 from cobot_lfd.learning.course.scene_regression import SceneRegression
@@ -28,7 +29,7 @@ from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.learning.product.approach import ApproachAngles
 from cobot_lfd.learning.product.frame_product import FrameProduct
 from cobot_lfd.learning.product.gather import Visits
-from cobot_lfd.learning.settings import LearningSettings, settings_for
+from cobot_lfd.learning.settings import EMSettings, LearningSettings, settings_for
 from cobot_lfd.recognition import LearntFrame, Part, Recognition
 
 STORED: tuple[type, ...] = (
@@ -51,6 +52,7 @@ STORED: tuple[type, ...] = (
     Recognition,
     SceneRegression,
     TableEncoding,
+    ToldBy,
     Visits,
 )
 """What a model file may hold."""
@@ -85,7 +87,7 @@ class TaskParameterisedGMM:
         cls,
         demonstrations: Sequence[TaskDemonstration],
         *,
-        n_components: int = 4,
+        n_components: int | None = None,
         method: str = "improved",
         settings: LearningSettings | None = None,
         frame_kinds: Mapping[str, FrameKind] | None = None,
@@ -99,8 +101,8 @@ class TaskParameterisedGMM:
 
         Args:
             demonstrations: Planar or spatial ones, of any length and sampling, all with the same frames.
-            n_components: Number of Gaussians, where mixtures are fitted; the improved method's default
-                generator has none.
+            n_components: Number of Gaussians; None: as in the settings, 4 unless changed. The improved method
+                fits no mixture, so that this and the other arguments of mixtures have no effect there.
             method: "improved" (the default), "paper" (the published method) or "conventional" (TP-GMM/R).
             settings: All choices in one value; given, ``method`` is not used.
             frame_kinds: Kinds that are known; they are not put to the test.
@@ -110,20 +112,29 @@ class TaskParameterisedGMM:
             n_init: Number of starts with k-means; None: as in the settings.
             rng: For k-means initialisation only.
 
+        Warns:
+            UserWarning: If an argument for mixtures is given, and none is fitted.
+
         Raises:
             ValueError: If a setting is not allowed, or there are too few demonstrations or samples.
             DataError: If the demonstrations' frames differ by name.
         """
         chosen = settings_for(method) if settings is None else settings
-        em = chosen.em
-        em = replace(
-            em,
-            n_components=n_components,
-            tol=em.tol if tol is None else tol,
-            max_iter=em.max_iter if max_iter is None else max_iter,
-            reg_covar=em.reg_covar if reg_covar is None else reg_covar,
-            n_init=em.n_init if n_init is None else n_init,
-        )
+        asked = {
+            "n_components": n_components,
+            "tol": tol,
+            "max_iter": max_iter,
+            "reg_covar": reg_covar,
+            "n_init": n_init,
+        }
+        given = {name: value for name, value in asked.items() if value is not None}
+        if given and not chosen.fits_mixtures:
+            warnings.warn(
+                f"{', '.join(given)} has no effect: these settings fit no Gaussian mixture; leave it out, or "
+                "take method='paper' or 'conventional'.",
+                stacklevel=2,
+            )
+        em: EMSettings = replace(chosen.em, **given)  # type: ignore[arg-type]  # values of several types
         chosen = replace(chosen, em=em)
         if frame_kinds is not None:
             chosen = replace(chosen, kinds=dict(frame_kinds))

@@ -6,6 +6,7 @@ from enum import Enum
 
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning.course.course import CourseSettings as CourseSettings
+from cobot_lfd.learning.course.course import ToldBy as ToldBy
 from cobot_lfd.learning.kinds.bearing import BearingTest as BearingTest
 from cobot_lfd.learning.kinds.criteria import Criteria as Criteria
 from cobot_lfd.learning.mixtures.em import EMSettings as EMSettings
@@ -35,6 +36,14 @@ class Generator(Enum):
     COURSE = "course"
 
 
+class Alignment(Enum):
+    """Whether the demonstrations are warped to one timing before the frames' Gaussians are fitted."""
+
+    OFF = "off"
+    WARP = "dynamic time warping"
+    CHOSEN = "chosen by leave-one-out"
+
+
 class RingDirection(Enum):
     """Which way a ring looks."""
 
@@ -48,6 +57,7 @@ class LearningSettings:
 
     Attributes:
         em: Fit of the mixtures.
+        alignment: Whether the demonstrations are warped to one timing, for the product.
         encode: Mixtures, or kernel statistics over time.
         kernel_width: Standard deviation of the kernel, in units of the path's duration.
         identifier: How the frames' kinds are found.
@@ -64,6 +74,7 @@ class LearningSettings:
     """
 
     em: EMSettings = field(default_factory=EMSettings)
+    alignment: Alignment = Alignment.OFF
     encode: Encode = Encode.MIXTURE
     kernel_width: float = 0.02
     identifier: Identifier = Identifier.BEARING
@@ -77,6 +88,12 @@ class LearningSettings:
     course: CourseSettings = field(default_factory=CourseSettings)
     select_frames: bool = True
     kinds: Mapping[str, FrameKind] = field(default_factory=dict)
+
+    @property
+    def fits_mixtures(self) -> bool:
+        """Whether any Gaussian mixture is fitted, to find the frames' kinds or to make paths."""
+        product = self.generator is Generator.PRODUCT and self.encode is Encode.MIXTURE
+        return product or self.identifier is Identifier.CRITERIA
 
 
 IMPROVED = LearningSettings()

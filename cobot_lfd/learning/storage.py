@@ -15,7 +15,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.errors import ModelError
 
 FORMAT = "cobot_lfd model"
-VERSION = 1
+VERSION = 2
 
 
 def save(path: Path, value: object) -> None:

@@ -20,7 +20,7 @@ def fit(
     *,
     out: Path,
     method: Literal["improved", "paper", "conventional"] = "improved",
-    n_components: int = 4,
+    n_components: int | None = None,
     frames: Literal["named", "auto"] = "named",
 ) -> int:
     """Learn a model from the demonstrations that did the task.
@@ -29,7 +29,7 @@ def fit(
         demos: Folder of demonstrations.
         out: File for the model, ending in .npz.
         method: The product's best configuration, the paper's, or conventional TP-GMM/R.
-        n_components: Number of Gaussians, where the method fits mixtures.
+        n_components: Number of Gaussians, for methods that fit mixtures.
         frames: "named" takes the objects that the recordings name; "auto" finds the frames that matter in
             the pictures and paths alone, and the model recognises them in new pictures by itself.
     """

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,18 +19,19 @@ from cobot_lfd.learning.course.scene_regression import (
 )
 from cobot_lfd.learning.course.smoothing import read, readout
 from cobot_lfd.learning.data import Scenes, TaskData
+from cobot_lfd.learning.warping import warp_together
 
 N_PHASES = 200
 """Steps along the way."""
 UNIT = 2.5
 """The task's size is this multiple of the paths' root mean square extent: about a straight path's length."""
-REACHES = (0.3, None)
-"""How far from a landmark the way alone counts (see ``phase``); None tells the path by time."""
+REACH = 0.4
+"""How far from a landmark the way alone counts (see ``phase``)."""
 PHASE_TOLERANCE = 0.95
 """A simpler way of telling phase must predict better by this factor to be taken."""
-JERK_WEIGHTS = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 2e-6)
+JERK_WEIGHTS = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 2e-6, 5e-6)
 """Penalties on a generated path's jerk that are tried."""
-JERK_TOLERANCE = 0.025
+JERK_TOLERANCE = 0.05
 """The strongest smoothing is taken that raises the held-out error by less than this part ..."""
 JERK_SHIFT = 3.0
 """... and moves the path by less than this many standard deviations of the place, nearly everywhere, ..."""
@@ -45,6 +47,14 @@ VISITED = 0.06
 """A frame is visited if every demonstration passes within this part of the task's size."""
 
 
+class ToldBy(Enum):
+    """What says which points of different demonstrations belong together."""
+
+    WAY = "the way travelled from, and left to, the frames that are visited"
+    TIME = "time"
+    WARP = "time, warped so that the distances to the frames agree"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Course:
     """The way, and how it is travelled.
@@ -53,14 +63,14 @@ class Course:
         regression: The way through the scene.
         progress: Share of the way that is done over time.
         coefficients: From positions over time to the smooth path, shape (B, T).
-        reach: The chosen way of telling phase.
+        told_by: The chosen way of telling phase.
         jerk_weight: The chosen smoothing.
     """
 
     regression: SceneRegression
     progress: Progress
     coefficients: Array
-    reach: float | None
+    told_by: ToldBy
     jerk_weight: float
 
     def generate(self, scenes: Scenes, n_steps: int) -> tuple[Array, Array]:
@@ -74,12 +84,9 @@ class Course:
 
     def notes(self) -> list[str]:
         """What was chosen, in sentences."""
-        told = "time"
-        if self.reach is not None:
-            told = f"the way from and to landmarks (within {self.reach:.0%} of the mean length)"
         sight = "and along the lines of sight" if self.regression.features.sight else "and no lines of sight"
         return [
-            f"Demonstrations are compared by {told}.",
+            f"Demonstrations are compared by {self.told_by.value}.",
             f"The path is made of the frames' origins, the oriented frames' axes {sight}.",
             f"Chosen by leaving demonstrations out: penalty on roughness {self.regression.rough_weight:g}, "
             f"on size {self.regression.size_weight:g}, on the jerk of generated paths {self.jerk_weight:g}.",
@@ -115,16 +122,22 @@ class CourseSettings:
     """Which parts of the improved generator are used.
 
     Attributes:
-        align: Tell the paths by phase where that predicts better than time.
-        landmarks: Let frames that are passed on the way divide the phase.
+        told_by: By what the demonstrations are compared; of several, leave-one-out chooses, and prefers the
+            first ones.
+        landmarks: Let frames that are passed on the way divide it.
         straighten: Make straight parts straight.
         smooth: Take out jerk.
     """
 
-    align: bool = True
+    told_by: tuple[ToldBy, ...] = (ToldBy.WAY, ToldBy.TIME)
     landmarks: bool = True
     straighten: bool = True
     smooth: bool = True
+
+    def __post_init__(self) -> None:
+        """Check."""
+        if not self.told_by:
+            raise ValueError(f"told_by is empty; choose of: {', '.join(way.name for way in ToldBy)}.")
 
 
 def task_size(data: TaskData) -> float:
@@ -141,7 +154,7 @@ def fit_course(data: TaskData, oriented: Sequence[bool], settings: CourseSetting
         settings: Which parts to use.
     """
     features = FeatureSet(tuple(oriented), False, task_size(data))
-    reach, phases, regression, progress = _best_phases(data, features, settings)
+    told_by, phases, regression, progress = _best_phases(data, features, settings)
     with_sight = FeatureSet(tuple(oriented), True, features.unit)
     if not all(oriented) and len(oriented) > 1:
         candidate = fit_scene_regression(phases.paths, data.scenes, with_sight)
@@ -150,13 +163,13 @@ def fit_course(data: TaskData, oriented: Sequence[bool], settings: CourseSetting
         regression = fit_scene_regression(phases.paths, data.scenes, regression.features, STRAIGHT_PARTS)
     ways = _held_out_ways(phases, regression)
     weight, coefficients = _smoothing(ways, progress, regression, data, settings)
-    return Course(regression, progress, coefficients, reach, weight)
+    return Course(regression, progress, coefficients, told_by, weight)
 
 
 def held_out_errors(data: TaskData, oriented: Sequence[bool], roughness: Roughness = MINIMUM_JERK) -> Array:
     """Mean distance of each demonstration from what the others predict [m], shape (N,)."""
     features = FeatureSet(tuple(oriented), False, task_size(data))
-    phases = by_phase(data.paths, no_landmarks(data), REACHES[0], N_PHASES)
+    phases = by_phase(data.paths, no_landmarks(data), REACH, N_PHASES)
     regression = fit_scene_regression(phases.paths, data.scenes, features, roughness)
     return np.asarray(np.linalg.norm(regression.held_out, axis=1).mean(axis=1))
 
@@ -180,27 +193,35 @@ def inner_landmarks(data: TaskData) -> NDArray[np.intp]:
 
 def _best_phases(
     data: TaskData, features: FeatureSet, settings: CourseSettings
-) -> tuple[float | None, Phases, SceneRegression, Progress]:
+) -> tuple[ToldBy, Phases, SceneRegression, Progress]:
     """The way of telling phase that predicts the paths over time best."""
-    choices: list[tuple[float | None, NDArray[np.intp]]] = [(None, no_landmarks(data))]
-    if settings.align:
-        choices = [(reach, no_landmarks(data)) for reach in REACHES]
-        landmarks = inner_landmarks(data)
-        if settings.landmarks and landmarks.shape[1]:
-            # A frame that is passed must be passed in new scenes too, whatever the mean error says.
-            choices = [(REACHES[0], landmarks)]
+    landmarks = inner_landmarks(data) if settings.landmarks else no_landmarks(data)
+    choices = settings.told_by
+    if ToldBy.WAY in choices and landmarks.shape[1]:
+        # A frame that is passed must be passed in new scenes too, whatever the mean error says.
+        choices = (ToldBy.WAY,)
     best = None
-    for reach, landmarks in choices:
-        phases = by_phase(data.paths, landmarks, reach, N_PHASES)
+    for told_by in choices:
+        phases = _told(data, told_by, landmarks)
         regression = fit_scene_regression(phases.paths, data.scenes, features)
         progress = common_progress(data.paths, phases.shares, regression.predict(data.scenes))
         course = follow(_held_out_ways(phases, regression), progress.mean)
         error = _distance(course, data).mean()
         if best is None or error < PHASE_TOLERANCE * best[0]:
-            best = error, reach, phases, regression, progress
-    if best is None:
-        raise ValueError("there is no way to tell phase.")
+            best = error, told_by, phases, regression, progress
+    assert best is not None, "told_by was checked not to be empty"
     return best[1:]
+
+
+def _told(data: TaskData, told_by: ToldBy, landmarks: NDArray[np.intp]) -> Phases:
+    """The demonstrations, brought to where they belong together."""
+    if told_by is ToldBy.WAY:
+        return by_phase(data.paths, landmarks, REACH, N_PHASES)
+    over_time = by_phase(data.paths, no_landmarks(data), None, N_PHASES)
+    if told_by is ToldBy.TIME:
+        return over_time
+    warped = by_phase(warp_together(data).paths, no_landmarks(data), None, N_PHASES)
+    return Phases(warped.paths, over_time.shares)
 
 
 def _clearly_better(candidate: SceneRegression, base: SceneRegression) -> bool:

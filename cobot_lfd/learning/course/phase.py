@@ -2,9 +2,9 @@
 
 Timing differs between demonstrations, and a longer way between two frames shifts everything in time. What
 comes back in every demonstration is tied to *places*: so many centimetres after leaving the first frame, so
-many before arriving at the next. The phase therefore counts the way travelled since the last landmark and
-the way left to the next one, f(s) / (f(s) + f(l - s)) with f(s) = s / (s + reach): near a landmark it
-depends on the distance to it alone, half way between two it is the share of the way.
+many before arriving at the next. The phase therefore runs with the way travelled since the last landmark,
+and then with the way left to the next one; what a demonstration's way is longer than the shortest one's is
+spread over the middle: s(p) = p l_min + (l - l_min) h(p), with h from 0 to 1 and flat at both ends.
 """
 
 from dataclasses import dataclass
@@ -20,6 +20,9 @@ SMOOTHING = 0.02
 
 STRIDE = 0.04
 """The way is measured in strides of this part of the path's extent, several times a hand's trembling."""
+
+FINE = 400
+"""Places at which the relation between way and phase is tabulated."""
 
 LARGEST_STEP = 0.1
 """Largest correction of a demonstration's progress at once, as a share of the way."""
@@ -69,7 +72,8 @@ def by_phase(paths: Array, landmarks: NDArray[np.intp], reach: float | None, n_p
     Args:
         paths: Positions over time [m], shape (N, T, d).
         landmarks: Steps at which each demonstration passes the inner landmarks, shape (N, M), in order.
-        reach: How far from a landmark the way alone counts, in units of the mean length; None: phase is time.
+        reach: How far from a landmark the way alone counts, as a share of the shortest way between landmarks,
+            below 0.5; None: phase is time.
         n_phases: U.
     """
     n, t, _ = paths.shape
@@ -78,7 +82,7 @@ def by_phase(paths: Array, landmarks: NDArray[np.intp], reach: float | None, n_p
     way = way_despite_trembling(smooth)
     length = way[:, -1:]
     shares = np.where(length > 0, way / np.where(length > 0, length, 1.0), times)
-    phases = np.tile(times, (n, 1)) if reach is None else _piecewise(way, landmarks, reach * length.mean())
+    phases = np.tile(times, (n, 1)) if reach is None else _piecewise(way, landmarks, reach)
     phases = phases + 1e-9 * times
     phases = (phases - phases[:, :1]) / (phases[:, -1:] - phases[:, :1])
     at = np.linspace(0.0, 1.0, n_phases)
@@ -97,17 +101,21 @@ def _piecewise(way: Array, landmarks: NDArray[np.intp], reach: float) -> Array:
     stops = np.concatenate([np.zeros((n, 1), int), landmarks, np.full((n, 1), t - 1)], axis=1)
     at_stops = np.take_along_axis(way, stops, axis=1)
     legs = np.maximum(np.diff(at_stops, axis=1), 1e-9)
-    share = np.median(legs, axis=0)
-    # With these shares the phase's rate does not jump at a landmark.
-    share = share / (share + reach) if reach > 0 else share
-    share = share / share.sum()
+    shortest = legs.min(axis=0)
+    at = np.linspace(0.0, 1.0, FINE)
+    stretch = _step(np.clip((at - reach) / (1 - 2 * reach), 0.0, 1.0))
     out = np.zeros((n, t))
-    for leg in range(legs.shape[1]):
-        length = legs[:, leg, None]
-        done = np.clip(way - at_stops[:, leg, None], 0.0, length)
-        first, last = done / (done + reach), (length - done) / (length - done + reach)
-        out += share[leg] * first / (first + last)
+    for leg, short in enumerate(shortest):
+        for demonstration, length in enumerate(legs[:, leg]):
+            done = way[demonstration] - at_stops[demonstration, leg]
+            own = np.interp(done, short * at + (length - short) * stretch, at)
+            out[demonstration] += short / shortest.sum() * own
     return out
+
+
+def _step(u: Array) -> Array:
+    """From 0 to 1 with flat ends."""
+    return u * u * (3 - 2 * u)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,10 +160,19 @@ def common_progress(paths: Array, shares: Array, fitted: Array) -> Progress:
         ahead = ((paths - point) * direction).sum(axis=-1) / length
         shares = place / (n_steps - 1) + np.clip(ahead, -LARGEST_STEP, LARGEST_STEP)
     spread = shares.std(axis=0, ddof=min(1, len(shares) - 1))
-    mean = gaussian_filter1d(shares.mean(axis=0), max(0.5 * SMOOTHING * len(shares[0]), 1e-3), mode="nearest")
+    mean = _smoothed(shares.mean(axis=0), 0.5 * SMOOTHING)
     mean = np.maximum.accumulate(np.clip(mean, 0.0, 1.0))
     span = mean[-1] - mean[0]
     return Progress((mean - mean[0]) / span if span > 1e-9 else np.linspace(0, 1, len(mean)), spread)
+
+
+def _smoothed(shares: Array, width: float) -> Array:
+    """Filtered over time, shape (T,); beyond its ends it goes on as it came, so that the pace there stays."""
+    n_beyond = min(len(shares) - 1, round(4 * width * len(shares)) + 1)
+    longer = np.pad(shares, n_beyond, mode="reflect", reflect_type="odd")
+    return np.asarray(gaussian_filter1d(longer, max(width * len(shares), 1e-3)))[
+        n_beyond : len(longer) - n_beyond
+    ]
 
 
 def follow(paths: Array, progress: Array, carried: Array | None = None) -> Array:

@@ -8,9 +8,12 @@ from cobot_lfd.learning.course.splines import basis, even_basis, roughness_penal
 N_FUNCTIONS = 60
 """Spline functions of a generated path."""
 
-PACE_WEIGHT = 1.0
+PACE_WEIGHT = 0.004
 """How firmly the pace at both ends is held, against positions. A demonstration sets off from rest; without
-this, smoothing makes the path set off backwards by a few millimetres, and turning costs an arm time."""
+this, smoothing makes the path set off backwards by a few millimetres, and turning costs an arm time. More
+of it makes jerk where a demonstration sets off at speed."""
+PACE_SPAN = 0.02
+"""The pace at an end is told from twice this part of the duration: over less, trembling counts as pace."""
 
 
 def readout(variance: Array, weight: float) -> Array:
@@ -36,9 +39,11 @@ def readout(variance: Array, weight: float) -> Array:
 
 def _end_differences(n_times: int) -> Array:
     """The map from positions over time to the pace at both ends, exact for parabolas, shape (2, T)."""
-    one_sided = np.array([-1.5, 2.0, -0.5]) * (n_times - 1)
+    step = max(1, min(round(PACE_SPAN * n_times), (n_times - 1) // 2))
+    one_sided = np.array([-1.5, 2.0, -0.5]) * (n_times - 1) / step
     differences = np.zeros((2, n_times))
-    differences[0, :3], differences[1, -3:] = one_sided, -one_sided[::-1]
+    differences[0, : 2 * step + 1 : step] = one_sided
+    differences[1, n_times - 1 - 2 * step :: step] = -one_sided[::-1]
     return differences
 
 
