@@ -11,7 +11,13 @@ from numpy.testing import assert_allclose
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.course.course import fit_course
 from cobot_lfd.learning.course.features import FeatureSet, scene_features
-from cobot_lfd.learning.course.phase import by_phase, follow, way_despite_trembling, way_travelled
+from cobot_lfd.learning.course.phase import (
+    by_phase,
+    common_progress,
+    follow,
+    way_despite_trembling,
+    way_travelled,
+)
 from cobot_lfd.learning.course.scene_regression import fit_scene_regression
 from cobot_lfd.learning.course.smoothing import read, readout
 from cobot_lfd.learning.course.splines import even_basis, roughness_penalty
@@ -82,6 +88,23 @@ def test_way_and_phase_do_not_depend_on_speed(seed: int, power: float) -> None:
     first, second = (by_phase(p, none, 0.3, 50).paths for p in (steady, hasty))
     size = way_travelled(curves)[:, -1].max()
     assert np.linalg.norm(first - second, axis=-1).mean() < 0.03 * size
+
+
+def test_near_a_landmark_the_way_alone_counts() -> None:
+    """Of straight ways of 1 m and of 2 m, the same phase is as far from the start, or from the end."""
+    along = np.linspace(0, 1, 400)[:, None] * np.array([[1.0, 0.0]])
+    told = by_phase(np.stack([along, 2 * along]), np.zeros((2, 0), dtype=np.intp), 0.4, 201).paths[..., 0]
+    first, last = slice(0, 70), slice(131, 201)
+    assert_allclose(told[0, first], told[1, first], atol=0.01)
+    assert_allclose(1 - told[0, last], 2 - told[1, last], atol=0.01)
+    assert (np.diff(told, axis=1) >= 0).all()
+
+
+def test_progress_keeps_its_pace_at_the_ends() -> None:
+    """Along a line at constant speed, smoothing over time does not slow the first and last steps."""
+    line = np.linspace([0.0, 0.0], [1.0, 0.0], 200)[None]
+    progress = common_progress(line, np.linspace(0, 1, 200)[None], line)
+    assert_allclose(progress.mean, np.linspace(0, 1, 200), atol=1e-6)
 
 
 def test_trembling_on_the_spot_is_no_way() -> None:

@@ -132,6 +132,21 @@ def test_scikit_learns_argument_names_reach_the_mixture() -> None:
     assert "3 Gaussians, 2 iterations, stopped without converging" in model.explain()
 
 
+def test_arguments_of_mixtures_without_effect_are_told() -> None:
+    with pytest.warns(UserWarning, match="n_components, tol has no effect: these settings fit no Gaussian"):
+        TaskParameterisedGMM.fit(demos(), n_components=3, tol=1e-3)
+
+
+def test_warping_is_chosen_where_it_helps_and_told() -> None:
+    kernel = replace(PAPER, encode=Encode.KERNEL, alignment=Alignment.CHOSEN)
+    assert "Warped to one timing the demonstrations do" in fit(kernel).explain()
+
+
+def test_without_a_way_to_tell_paths_settings_are_refused() -> None:
+    with pytest.raises(ValueError, match="told_by is empty; choose of: WAY, TIME, WARP"):
+        replace(IMPROVED.course, told_by=())
+
+
 def test_a_negative_regularisation_is_refused() -> None:
     with pytest.raises(ValueError, match="tol and reg_covar must not be negative"):
         TaskParameterisedGMM.fit(demos(), method="paper", reg_covar=-1.0)

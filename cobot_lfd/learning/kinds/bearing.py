@@ -42,7 +42,7 @@ class BearingTest:
     window: float = 0.06
     margin: float = 0.45
     doubt: float = 0.2
-    nearest: float = 0.03
+    nearest: float = 0.06
     looks: tuple[float, ...] = (0.25, 0.5, 0.75)
 
 
