@@ -53,7 +53,8 @@ def way_despite_trembling(paths: Array) -> Array:
     The way grows by the greatest distance reached from an anchor; the anchor follows in strides.
     """
     n, t, _ = paths.shape
-    stride = STRIDE * np.linalg.norm(paths.max(axis=1) - paths.min(axis=1), axis=1)
+    from_centre = np.linalg.norm(paths - paths.mean(axis=1, keepdims=True), axis=-1)
+    stride = STRIDE * 2 * from_centre.max(axis=1)
     anchor, behind, ahead = paths[:, 0].copy(), np.zeros(n), np.zeros(n)
     way = np.zeros((n, t))
     for step in range(1, t):
