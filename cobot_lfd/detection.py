@@ -26,6 +26,8 @@ class ObjectModel:
             1 where the outline tells the orientation.
         base_z: Height of the object's foot in the world [m]; the walls below the outline may be seen too.
         holes: Contours of openings in the same plane [m]: a container's inner rim.
+        ground: Colour of what it stands on under white light, shape (3,), where that is known; it tells how
+            the object's colour must look under the light in a picture, and how bright it must be.
         found_by: Which detector finds it.
         marker: The marker that lies on it, in the middle of its frame, where a marker finds it.
         appearance: What its face looks like, where features find it.
@@ -38,6 +40,7 @@ class ObjectModel:
     symmetry: int
     base_z: float
     holes: tuple[Array, ...] = ()
+    ground: Array | None = None
     found_by: DetectorKind = "shape"
     marker: Marker | None = None
     appearance: Appearance | None = None
@@ -46,6 +49,8 @@ class ObjectModel:
         """Copy and check."""
         object.__setattr__(self, "outline", frozen_array(self.outline, "outline", (None, 2)))
         object.__setattr__(self, "colour", frozen_array(self.colour, "colour", (3,)))
+        if self.ground is not None:
+            object.__setattr__(self, "ground", frozen_array(self.ground, "ground", (3,)))
         object.__setattr__(self, "holes", tuple(frozen_array(h, "holes", (None, 2)) for h in self.holes))
         if self.symmetry < 1:
             raise ValueError(f"symmetry of '{self.name}' is {self.symmetry}; it must be at least 1.")

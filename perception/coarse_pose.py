@@ -12,7 +12,12 @@ from perception.silhouette import corners_in_world
 _ANGLE_STEP = np.deg2rad(5.0)
 _N_DIRECTIONS = 48
 _MOST_POSES = 3
-_N_PUSHES = 8
+_MOST_COVERED = 12
+_SAME_ANGLE, _SAME_PLACE = 2, 8.0  # Steps and distance [px] within which two poses are one start.
+_BEYOND = (
+    4.0  # Where the region reaches beyond the shape counts that many times more than where it falls short.
+)
+_N_PUSHES = 12
 _N_REWEIGHTINGS = 8
 _AGREEMENT = 3.0  # Difference in reach up to which two shapes agree [px].
 _N_TIMES_WORSE = 2.0  # A pose that fits this many times worse than the best one is not worth a try.
@@ -38,36 +43,60 @@ def guess_poses(
     reach = (region.hull @ normals.T).max(axis=0) + 0.5 * scale
     middle = camera.to_plane(region.centroid, 0.5 * (model.z + model.base_z))
     angles = np.arange(0.0, 2 * np.pi / model.symmetry - 1e-9, _ANGLE_STEP)
-    corners = np.array([corners_in_world(model, Frame(middle, angle)) for angle in angles])
+    corners = _turned(corners_in_world(model, Frame(np.zeros(2), 0.0)), angles, middle)
     excess = reach - (camera.project(corners) @ normals.T).max(axis=1)
     shifts, misfits = _align_covered(excess, normals) if covered else _align(excess, normals)
-    lowest = _local_minima(misfits)
-    likely = lowest[misfits[lowest] <= _N_TIMES_WORSE * misfits[lowest[0]]]
     start = camera.project([*middle, model.z])
     return [
-        Frame(camera.to_plane(start + shifts[i], model.z), float(angles[i])) for i in likely[:_MOST_POSES]
+        Frame(camera.to_plane(start + shifts[i, j], model.z), float(angles[i]))
+        for i, j in _likeliest(shifts, misfits, _MOST_COVERED if covered else _MOST_POSES)
     ]
 
 
+def _likeliest(shifts: Array, misfits: Array, most: int) -> list[tuple[int, int]]:
+    """Which of m angles with k shifts each, shape (m, k, 2), have the least misfit, and differ enough."""
+    n_angles, chosen = len(misfits), list[tuple[int, int]]()
+    for flat in np.argsort(misfits, axis=None, kind="stable"):
+        i, j = divmod(int(flat), misfits.shape[1])
+        if misfits[i, j] > _N_TIMES_WORSE * misfits.min() or len(chosen) == most:
+            break
+        if all(
+            min((i - a) % n_angles, (a - i) % n_angles) > _SAME_ANGLE
+            or np.linalg.norm(shifts[i, j] - shifts[a, b]) > _SAME_PLACE
+            for a, b in chosen
+        ):
+            chosen.append((i, j))
+    return chosen
+
+
+def _turned(corners: Array, angles: Array, middle: Array) -> Array:
+    """Corners of shape (n, 3) at each of m angles about the vertical, then moved by ``middle``, (m, n, 3)."""
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    x, y, z = corners.T
+    x, y = cos * x - sin * y + middle[0], sin * x + cos * y + middle[1]
+    return np.stack([x, y, np.broadcast_to(z, x.shape)], axis=-1)
+
+
 def _align(excess: Array, normals: Array) -> tuple[Array, Array]:
-    """The shift at each of m angles that makes two shapes agree best, (m, 2), and the misfit left, (m,).
+    """The shift at each of m angles that makes two shapes agree best, (m, 1, 2), and the misfit left, (m, 1).
 
     Args:
         excess: How much farther the one shape reaches than the other, shape (m, n).
         normals: The directions, shape (n, 2).
     """
     shifts = excess @ np.linalg.pinv(normals).T
-    return shifts, np.linalg.norm(excess - shifts @ normals.T, axis=1)
+    return shifts[:, None], np.linalg.norm(excess - shifts @ normals.T, axis=1)[:, None]
 
 
 def _align_covered(excess: Array, normals: Array) -> tuple[Array, Array]:
     """The same where a part may be covered: as many directions as possible agree, the others count little.
 
     From the shift that would agree best if nothing were covered, the shape is pushed to where it agrees in
-    one of eight directions; each time the shift is improved with Geman and McClure's weights.
+    one of k = 12 directions; each time the shift is improved with Geman and McClure's weights. What is left of
+    a box often fits to either end of it, so all shifts are returned, (m, k, 2), with their misfits, (m, k).
     """
     m, n = excess.shape
-    first, _ = _align(excess, normals)
+    first = _align(excess, normals)[0][:, 0]
     pushed = normals[:: n // _N_PUSHES]
     short = (excess - first @ normals.T)[:, :: n // _N_PUSHES]
     shifts = (first[:, None] + short[..., None] * pushed).reshape(-1, 2)
@@ -78,12 +107,5 @@ def _align_covered(excess: Array, normals: Array) -> tuple[Array, Array]:
         pulls = np.einsum("mn,ni->mi", weights * excess, normals)
         shifts = np.linalg.solve(matrices, pulls[..., None])[..., 0]
     rest = excess - shifts @ normals.T
-    costs = np.minimum(np.abs(rest), np.where(rest > 0.0, 4.0, 1.0) * _AGREEMENT).sum(axis=1).reshape(m, -1)
-    best = np.argmin(costs, axis=1)
-    return shifts.reshape(m, -1, 2)[np.arange(m), best], costs[np.arange(m), best]
-
-
-def _local_minima(values: Array) -> Array:
-    """Indices of the values that are smaller than both neighbours around the circle, the smallest first."""
-    lowest = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
-    return np.asarray(lowest[np.argsort(values[lowest], kind="stable")])
+    costs = np.minimum(np.abs(rest), np.where(rest > 0.0, _BEYOND, 1.0) * _AGREEMENT).sum(axis=1)
+    return shifts.reshape(m, -1, 2), costs.reshape(m, -1)

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from cobot_lfd.arrays import Array
 from perception.picture import Picture
 
+_SHADE = 0.3  # Standard deviation of p + q from 1, by shadows and the shade of faces.
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mixture:
@@ -17,27 +19,41 @@ class Mixture:
 
     The shade of the object's faces goes into p, shadows on the table into q; so a pixel that shows only the
     object has q = 0 and one that shows only the table p = 0, however the light falls. N is at right angles to
-    both and as long as T: r is what belongs to neither.
+    both and as long as T: r is what belongs to neither. Where O and T differ little but in brightness, as
+    white and wood do, noise would drown p and q; so they are the likeliest given that ``p + q`` is near 1.
 
     Attributes:
-        weights: The rows give p, q and r when multiplied by red, green, blue (0..255), shape (3, 3).
+        weights: The rows give p, q and r when multiplied by red, green, blue (0..255) and 1, shape (3, 4).
+        colours: O, T and N are its columns, shape (3, 3).
     """
 
     weights: Array
+    colours: Array
+
+    @classmethod
+    def of(cls, thing: Array, table: Array, noise: float = 1.0) -> "Mixture":
+        """For an object and a table of these colours, red, green, blue, shape (3,) each.
+
+        Args:
+            thing: The object's colour.
+            table: The table's.
+            noise: Standard deviation of the noise of the picture's pixels [0..255].
+        """
+        neither = np.cross(thing, table)
+        if np.linalg.norm(neither) < 1e-6 * np.linalg.norm(table) ** 2:
+            neither = np.cross(table, np.roll(table, 1) * [1.0, -1.0, 1.0])
+        neither *= np.linalg.norm(table) / np.linalg.norm(neither)
+        pair = np.column_stack([thing, table])
+        information = pair.T @ pair / noise**2 + 1.0 / _SHADE**2
+        shares = np.linalg.solve(information, np.column_stack([pair.T / noise**2, np.full(2, _SHADE**-2)]))
+        rest = np.append(neither / (neither @ neither), 0.0)
+        return cls(np.vstack([shares, rest]), np.column_stack([pair, neither]))
 
     def foreign(self, thing: Array, table: Array, neither: Array) -> Array:
         """How much of colours, given by their shares, is not the table's; of what is; shape (n,)."""
-        colours = np.linalg.inv(self.weights)
-        rest = np.outer(thing, colours[:, 0]) + np.outer(neither, colours[:, 2])
-        tables = np.maximum(table, 1e-3) * np.linalg.norm(colours[:, 1])
+        rest = np.outer(thing, self.colours[:, 0]) + np.outer(neither, self.colours[:, 2])
+        tables = np.maximum(table, 1e-3) * np.linalg.norm(self.colours[:, 1])
         return np.asarray(np.linalg.norm(rest, axis=1) / tables)
-
-    @classmethod
-    def of(cls, thing: Array, table: Array) -> "Mixture":
-        """For an object and a table of these colours, red, green, blue, shape (3,) each."""
-        neither = np.cross(thing, table)
-        neither *= np.linalg.norm(table) / np.linalg.norm(neither)
-        return cls(np.linalg.inv(np.column_stack([thing, table, neither])))
 
     def near(self, picture: Picture, pixels: Array, reach: float) -> "MixtureImage":
         """The mixture in the part of a picture that is around some places, shape (n, 2)."""

@@ -16,8 +16,9 @@ from perception.picture import Picture
 from perception.silhouette import Contour, silhouette_hull, visible_contour
 
 # How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
-# start; near at last, so that shadows and other edges nearby do not disturb.
-_REACHES = (8.0, 4.0, 2.5)
+# start; near at last, so that shadows and other edges nearby do not disturb. A few points do until then.
+_REACHES, _LAST_REACH = (8.0, 4.0), 2.5
+_COARSE_SPACING = 3.0  # Of those few points [px].
 _SMALLEST_REACH = 2.0
 _FEWEST_POINTS = 12
 _LEAST_WEIGHT = 0.2  # Of an edge, by Tukey's biweight, so that it counts as part of the outline.
@@ -74,23 +75,33 @@ def fit_outline(
         The fit; None if there are too few edges near the start.
     """
     width = float(np.ptp(silhouette_hull(model, start, camera), axis=0).min())
+    widest = max(0.3 * width, _SMALLEST_REACH)
     frame = start
-    for reach in np.minimum(_REACHES, max(0.3 * width, _SMALLEST_REACH)):
-        seen = _measure(picture, camera, model, mixture, frame, float(reach))
-        if seen.edges.valid.sum() < _FEWEST_POINTS:
+    for reach in _REACHES:
+        seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), _COARSE_SPACING)
+        if seen is None:
             return None
         frame = _moved(frame, _robust_step(seen)[0])
-    seen = _measure(picture, camera, model, mixture, frame, float(reach))
-    if seen.edges.valid.sum() < _FEWEST_POINTS:
-        return None
-    return _finish(seen)
+    seen = _measure(picture, camera, model, mixture, frame, min(_LAST_REACH, widest))
+    return None if seen is None else _finish(seen)
 
 
 def _measure(
-    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, frame: Frame, reach: float
-) -> _Measurement:
-    contour = visible_contour(model, frame, camera)
+    picture: Picture,
+    camera: Camera,
+    model: ObjectModel,
+    mixture: Mixture,
+    frame: Frame,
+    reach: float,
+    spacing: float = 1.0,
+) -> _Measurement | None:
+    """The edges along the outline at a pose; None if there are too few."""
+    contour = visible_contour(model, frame, camera, spacing)
+    if len(contour.points) < _FEWEST_POINTS:
+        return None
     edges = measure_edges(picture, mixture, contour, reach)
+    if edges.valid.sum() < _FEWEST_POINTS:
+        return None
     return _Measurement(frame, contour, _jacobian(contour, frame, camera), edges)
 
 

@@ -18,8 +18,14 @@ _LEAST_SHARE = (
 )
 _MOST_DEVIATION = 0.6  # Of a pixel from the line between table and object, as a share of the difference.
 _MOST_UNLIKE = 0.35  # Of a region's colour from the expected; coloured light makes 0.1, red for orange 0.5.
+_PALE = 0.1  # Colours whose shares differ less from the table's are told by their brightness, too.
+_BRIGHTNESS_SPREAD = 0.2  # Of the logarithm of an object's brightness, because its faces are shaded.
+_LEAST_BRIGHTER = 0.05  # Of the logarithm: what is that much brighter than the table is no shadow on it.
+_MOST_UNLIKELY = 9.0  # Squared deviation from a pale object's colour, in spreads.
 _SMALLEST = 3  # Fewer averaged pixels are noise; an object has sixty and more.
 _EVERY = 5  # Pixels from one to the next where a part of them is enough.
+_BLACK = 0.02  # No ground is darker.
+_LEAST_NOISE = 0.7  # What rounding leaves at the least [0..255].
 _N_NOISE = 5.0  # Standard deviations of the table's colour that never count as an object.
 
 _PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
@@ -51,6 +57,19 @@ class Region:
         """Whether its colour is the expected one, give or take the light's."""
         return self.unlikeness < _MOST_UNLIKE
 
+    def joined(self, other: "Region") -> "Region":
+        """Both as one, with what lies between them."""
+        area = self.area + other.area
+        corners = np.vstack([self.hull, other.hull]).astype(np.float32)
+        return Region(
+            hull=np.asarray(cv2.convexHull(corners)[:, 0], np.float64),
+            centroid=(self.area * self.centroid + other.area * other.centroid) / area,
+            area=area,
+            colour=(self.area * self.colour + other.area * other.colour) / area,
+            at_border=self.at_border or other.at_border,
+            unlikeness=max(self.unlikeness, other.unlikeness),
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segmentation:
@@ -60,11 +79,13 @@ class Segmentation:
         table: The table's colour, red, green, blue in 0..255, shape (3,).
         regions: For each object the regions that have its colour, the largest first.
         scale: Side of the squares of pixels that were averaged before [px].
+        noise: Standard deviation of the noise of the picture's pixels [0..255].
     """
 
     table: Array
     regions: tuple[tuple[Region, ...], ...]
     scale: int
+    noise: float
 
 
 def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segmentation | None:
@@ -85,22 +106,53 @@ def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segm
     table = table_colour(pixels[::_EVERY])
     if table is None:
         return None
-    colours = list(dict.fromkeys(tuple(model.colour) for model in models))
-    labels = _label(pixels, table, np.array(colours)).reshape(height, width)
-    of_colour = {
-        colour: _regions(labels == i, small, scale, np.array(colour), table)
-        for i, colour in enumerate(colours)
-    }
-    return Segmentation(table, tuple(of_colour[tuple(model.colour)] for model in models), scale)
+    looks = [_expected(model, table) for model in models]
+    different = list(dict.fromkeys(looks))
+    labels = _label(pixels, table, different).reshape(height, width)
+    of_look = {look: _regions(labels == i, small, scale, look, table) for i, look in enumerate(different)}
+    return Segmentation(table, tuple(of_look[look] for look in looks), scale, _noise(picture))
 
 
-def _label(pixels: Array, table: Array, colours: Array) -> NDArray[np.int_]:
-    """For each pixel the number of the colour that it has, shape (m, 3), or -1 for none, shape (n,)."""
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """How an object's colour must look in a picture.
+
+    Attributes:
+        colour: Red, green, blue in 0..255; their sum means nothing where the brightness is not known.
+        brightness: Logarithm of how much brighter than the table it must be; None where that is not known.
+    """
+
+    colour: tuple[float, float, float]
+    brightness: float | None
+
+
+def _expected(model: ObjectModel, table: Array) -> _Look:
+    """An object's colour under the light that makes the table look as it does."""
+    if model.ground is None:
+        r, g, b = 255 * model.colour
+        return _Look((r, g, b), None)
+    r, g, b = table * model.colour / np.maximum(model.ground, _BLACK)
+    return _Look((r, g, b), float(np.log((r + g + b) / table.sum())))
+
+
+def _noise(picture: Picture) -> float:
+    """Standard deviation of the noise of a picture's pixels [0..255], from neighbours that should agree."""
+    green = picture[:: _EVERY + 3, :, 1].astype(np.int16)
+    typical = float(np.median(np.abs(np.diff(green, axis=1))))
+    return max(_LEAST_NOISE, 1.4826 / 2**0.5 * typical)
+
+
+def _label(pixels: Array, table: Array, looks: Sequence[_Look]) -> NDArray[np.int_]:
+    """For each pixel the number of the look that it has, or -1 for none, shape (n,)."""
     difference = (chromaticity(pixels) - chromaticity(table)) @ _PLANE
     best = np.full(len(pixels), _MOST_DEVIATION)
     labels = np.full(len(pixels), -1)
-    for i, colour in enumerate(colours):
-        expected = (chromaticity(colour) - chromaticity(table)) @ _PLANE
+    pale = []
+    for i, look in enumerate(looks):
+        expected = (chromaticity(np.array(look.colour)) - chromaticity(table)) @ _PLANE
+        if look.brightness is not None and np.linalg.norm(expected) < _PALE:
+            pale.append((i, expected, look.brightness))
+            continue
         expected /= expected @ expected
         share = difference @ expected
         noise = 1.4826 * float(np.median(np.abs(share[::_EVERY])))
@@ -110,17 +162,44 @@ def _label(pixels: Array, table: Array, colours: Array) -> NDArray[np.int_]:
         better = deviation < best[foreground]
         best[foreground[better]] = deviation[better]
         labels[foreground[better]] = i
+    if pale:
+        _label_pale(labels, pixels, difference, table, pale)
     return labels
 
 
-def _unlikeness(colour: Array, expected: Array, table: Array) -> float:
+def _label_pale(
+    labels: NDArray[np.int_],
+    pixels: Array,
+    difference: Array,
+    table: Array,
+    pale: Sequence[tuple[int, Array, float]],
+) -> None:
+    """Label the pixels that are left and more like a pale object than like the table, in light or shadow."""
+    rest = np.flatnonzero(labels < 0)
+    brightness = np.log(np.maximum(pixels[rest].sum(axis=1), 1.0) / table.sum())
+    noise = 1.4826 * np.median(np.abs(difference[::_EVERY]))
+    best = np.full(len(rest), _MOST_UNLIKELY)
+    for i, expected, expected_brightness in pale:
+        spread = 0.4 * np.linalg.norm(expected) + noise
+        off = np.linalg.norm(difference[rest] - expected, axis=1) / spread
+        thing = off**2 + ((brightness - expected_brightness) / _BRIGHTNESS_SPREAD) ** 2
+        off = np.linalg.norm(difference[rest], axis=1) / spread
+        ground = off**2 + (np.maximum(brightness, 0.0) / _LEAST_BRIGHTER) ** 2
+        better = (thing < best) & (thing < ground)
+        best[better] = thing[better]
+        labels[rest[better]] = i
+
+
+def _unlikeness(colour: Array, look: _Look, table: Array) -> float:
     """How far a colour is from the expected one, compared with how far that is from the table's."""
-    origin, goal = chromaticity(table), chromaticity(expected)
-    return float(np.linalg.norm(chromaticity(colour) - goal) / np.linalg.norm(goal - origin))
+    origin, goal = chromaticity(table), chromaticity(np.array(look.colour))
+    if look.brightness is None or np.linalg.norm(goal - origin) >= _PALE:
+        return float(np.linalg.norm(chromaticity(colour) - goal) / np.linalg.norm(goal - origin))
+    return float(np.linalg.norm(colour - look.colour) / np.linalg.norm(table - look.colour))
 
 
 def _regions(
-    mask: NDArray[np.bool_], small: Array, scale: int, expected: Array, table: Array
+    mask: NDArray[np.bool_], small: Array, scale: int, look: _Look, table: Array
 ) -> tuple[Region, ...]:
     """The connected parts of a mask, the largest first, those of another colour last."""
     count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
@@ -130,7 +209,7 @@ def _regions(
         if stats[i, cv2.CC_STAT_AREA] < _SMALLEST:
             continue
         region = _region(parts, i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
-        found.append(replace(region, unlikeness=_unlikeness(region.colour, expected, table)))
+        found.append(replace(region, unlikeness=_unlikeness(region.colour, look, table)))
     return tuple(sorted(found, key=lambda region: (not region.right_colour, -region.area)))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -21,10 +22,12 @@ from perception.silhouette import silhouette_hull
 _LEAST_AREA, _MOST_AREA = 0.3, 1.7  # Of the expected area; less is covered or something else.
 _LEAST_FOUND = 0.4  # Share of the outline that must be seen.
 _MOST_EMPTY = 0.08  # Share of the outline where only the table is seen.
+_MOST_BETWEEN = 0.3  # The same where something lies across an object, whose colour may be like the table's.
 _MOST_RESIDUAL = 1.0  # Root mean square distance of the edges from the outline [px].
 _MOST_DEVIATION = 0.003  # Standard deviation of the position that is still worth telling [m].
+_SURELY_FOUND, _SURE_RESIDUAL = 0.93, 0.5  # Share of the outline and residual [px] beyond doubt.
 _N_REGIONS = 4  # The largest regions are tried.
-_COARSE_SIZE = 8.0  # Least size of an object in the picture in which regions are looked for [px].
+_COARSE_SIZE = 5.0  # Least size of an object in the picture in which regions are looked for [px].
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +50,7 @@ class ShapeDetector:
             dark = "the picture is too dark; is the camera covered?"
             return tuple(NotSeen(model.name, dark) for model in self.models)
         tried = [
-            [_try(picture, camera, model, segmentation, region) for region in regions[:_N_REGIONS]]
+            _try_all(picture, camera, model, segmentation, regions[:_N_REGIONS])
             for model, regions in zip(self.models, segmentation.regions, strict=True)
         ]
         return tuple(
@@ -75,11 +78,41 @@ def _told(
     return NotSeen(model.name, [*faults, "what looks like it is another object of the same colour."][0])
 
 
+def _try_all(
+    picture: Picture,
+    camera: Camera,
+    model: ObjectModel,
+    segmentation: Segmentation,
+    regions: Sequence[Region],
+) -> list[OutlineFit | str]:
+    """The best fit to each region, or why there is none.
+
+    Something that lies across an object leaves two regions of it; so where no region is the object, pairs of
+    them are tried. A fit to a pair counts as one to its larger region.
+    """
+    results = [_try(picture, camera, model, segmentation, region) for region in regions]
+    if any(isinstance(result, OutlineFit) for result in results):
+        return results
+    for i, j in combinations(range(len(regions)), 2):
+        if regions[i].right_colour and regions[j].right_colour:
+            pair = regions[i].joined(regions[j])
+            both = _try(picture, camera, model, segmentation, pair, most_empty=_MOST_BETWEEN)
+            if isinstance(both, OutlineFit):
+                results[i] = both
+                break
+    return results
+
+
 def _try(
-    picture: Picture, camera: Camera, model: ObjectModel, segmentation: Segmentation, region: Region
+    picture: Picture,
+    camera: Camera,
+    model: ObjectModel,
+    segmentation: Segmentation,
+    region: Region,
+    most_empty: float = _MOST_EMPTY,
 ) -> OutlineFit | str:
     """The best fit to a region, or why there is none; that something is covered is tried last."""
-    mixture = Mixture.of(region.colour, segmentation.table)
+    mixture = Mixture.of(region.colour, segmentation.table, segmentation.noise)
     fault = ""
     for covered in (False, True):
         starts = guess_poses(region, model, camera, segmentation.scale, covered=covered)
@@ -90,23 +123,43 @@ def _try(
             )
         if not region.right_colour:
             return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
-        fits = [fit_outline(picture, camera, model, mixture, start) for start in starts]
-        best = max((fit for fit in fits if fit is not None), key=quality, default=None)
-        fault = _fault(model, camera, region, segmentation.scale, best)
+        best = _best_fit(picture, camera, model, mixture, starts)
+        fault = _fault(model, camera, region, segmentation.scale, best, most_empty)
         if best is not None and not fault:
             return best
     return fault
+
+
+def _best_fit(
+    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, starts: Sequence[Frame]
+) -> OutlineFit | None:
+    """The best fit from several starts; the later ones are tried only while none is beyond doubt."""
+    best: OutlineFit | None = None
+    for start in starts:
+        fit = fit_outline(picture, camera, model, mixture, start)
+        if fit is not None and (best is None or quality(fit) > quality(best)):
+            best = fit
+        if best is not None and best.found > _SURELY_FOUND and best.residual < _SURE_RESIDUAL:
+            break
+    return best
 
 
 def _where(region: Region) -> str:
     return "it is cut off by the picture's edge" if region.at_border else "it is covered, or something else"
 
 
-def _fault(model: ObjectModel, camera: Camera, region: Region, scale: int, fit: OutlineFit | None) -> str:
+def _fault(
+    model: ObjectModel,
+    camera: Camera,
+    region: Region,
+    scale: int,
+    fit: OutlineFit | None,
+    most_empty: float,
+) -> str:
     """Why a fit is not to be believed; empty if it is."""
     if fit is None or fit.found < _LEAST_FOUND:
         return f"only {100 * (fit.found if fit else 0.0):.0f} % of its outline is seen; {_where(region)}."
-    if fit.empty > _MOST_EMPTY:
+    if fit.empty > most_empty:
         return f"the table is seen at {100 * fit.empty:.0f} % of where its outline should be."
     if fit.residual > _MOST_RESIDUAL:
         return f"what has its colour differs from its outline by {fit.residual:.1f} px."

@@ -51,8 +51,8 @@ def silhouette_hull(model: ObjectModel, frame: Frame, camera: Camera) -> Array:
     return np.asarray(cv2.convexHull(corners)[:, 0], dtype=np.float64)
 
 
-def visible_contour(model: ObjectModel, frame: Frame, camera: Camera) -> Contour:
-    """Points on the border of an object's image, at most one per pixel, the corners left out.
+def visible_contour(model: ObjectModel, frame: Frame, camera: Camera, spacing: float = _SPACING) -> Contour:
+    """Points on the border of an object's image, ``spacing`` pixels apart or more, the corners left out.
 
     Every edge of the prism between outline and foot is sampled; the points that have the object's image on
     one side only are on its border.
@@ -60,7 +60,7 @@ def visible_contour(model: ObjectModel, frame: Frame, camera: Camera) -> Contour
     corners = corners_in_world(model, frame)
     seen = camera.project(corners)
     starts, ends = _edges(len(model.outline))
-    edges, shares = _places(np.linalg.norm(seen[ends] - seen[starts], axis=1))
+    edges, shares = _places(np.linalg.norm(seen[ends] - seen[starts], axis=1), spacing)
     starts, ends, shares = starts[edges], ends[edges], shares[:, None]
     directions = seen[ends] - seen[starts]
     normals = np.column_stack([directions[:, 1], -directions[:, 0]])
@@ -78,9 +78,9 @@ def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     return np.concatenate([around, n + around, around]), np.concatenate([after, n + after, n + around])
 
 
-def _places(lengths: Array) -> tuple[NDArray[np.int_], Array]:
+def _places(lengths: Array, spacing: float) -> tuple[NDArray[np.int_], Array]:
     """Points on edges of given lengths [px]: their edge's number and their share of its length, (n,) each."""
-    spacing = max(_SPACING, lengths.sum() / _MOST_POINTS)
+    spacing = max(spacing, lengths.sum() / _MOST_POINTS)
     counts = np.maximum((lengths - 2 * _CORNER) / spacing, 0.0).astype(int)
     edges = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(len(edges)) - np.repeat(np.cumsum(counts) - counts, counts)

@@ -1,5 +1,7 @@
 """What perception is told about a scene's objects: their outlines as seen from above."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cobot_lfd.arrays import Array
@@ -17,7 +19,9 @@ _SAME_HEIGHT = 1e-6  # [m]
 
 def object_models(description: SceneDescription) -> tuple[ObjectModel, ...]:
     """One model for each object that the camera sees, in the order of the scene's file."""
-    return tuple(object_model(name, item) for name, item in description.objects.items() if item.seen)
+    ground = np.array(description.table.colour)
+    seen = {name: item for name, item in description.objects.items() if item.seen}
+    return tuple(replace(object_model(name, item), ground=ground) for name, item in seen.items())
 
 
 def object_model(name: str, item: ObjectDescription) -> ObjectModel:
