@@ -49,7 +49,7 @@ def save_camera(camera: Camera, file: Path) -> None:
         f"height = {camera.height}  # [px]",
         f"matrix = {camera.matrix.tolist()}  # [px]",
         f"distortion = {camera.distortion.tolist()}  # k1, k2, p1, p2, k3",
-        f"position = {pose.position.tolist()}  # in the robot base's frame [m]",
+        f"position = {pose.position.tolist()}  # in the world [m]",
         f"quaternion = {pose.quaternion.tolist()}  # x, y, z, w",
     ]
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")

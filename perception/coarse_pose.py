@@ -92,8 +92,8 @@ def _align_covered(excess: Array, normals: Array) -> tuple[Array, Array]:
     """The same where a part may be covered: as many directions as possible agree, the others count little.
 
     From the shift that would agree best if nothing were covered, the shape is pushed to where it agrees in
-    one of k = 12 directions; each time the shift is improved with Geman and McClure's weights. What is left of
-    a box often fits to either end of it, so all shifts are returned, (m, k, 2), with their misfits, (m, k).
+    one of k = 12 directions; each time the shift is improved with Geman and McClure's weights. What is left
+    of a box often fits either end of it, so all shifts are returned, (m, k, 2), with their misfits, (m, k).
     """
     m, n = excess.shape
     first = _align(excess, normals)[0][:, 0]

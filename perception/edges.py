@@ -17,6 +17,8 @@ _LEAST_LIGHT = (
 )
 _BEYOND = np.array([1.5, 2.5, 3.5])  # Beyond the reach, where no blur brings the object's colour [px].
 _MOST_FOREIGN = 0.05  # Of a colour in the table's place, compared with the table's.
+_USUAL_NOISE = 0.08  # Of a share: what the limits here allow for.
+_N_SIGMA = 2.0  # By which they widen with more of it.
 _LEAST_COVERED = 0.7  # Share of the object well inside its outline, and of the table well outside.
 
 
@@ -54,18 +56,23 @@ def measure_edges(picture: Picture, mixture: Mixture, contour: Contour, reach: f
     light = np.maximum(table[:, outside].mean(axis=1), _LEAST_LIGHT)
     covered = np.clip(1.0 - table / light[:, None], -0.5, 1.5)
     within, without = covered[:, inside].mean(axis=1), covered[:, outside].mean(axis=1)
-    on_table = (
-        mixture.foreign(*image.between_pixels(*_across(contour, reach + _BEYOND)).mean(axis=2))
-        < _MOST_FOREIGN
-    )
-    table_outside = on_table & (light > _LEAST_LIGHT) & (np.abs(without) < 1.0 - _LEAST_COVERED)
-    object_inside = (thing[:, inside].mean(axis=1) > _LEAST_LIGHT) & (within > _LEAST_COVERED)
+    beyond = image.between_pixels(*_across(contour, reach + _BEYOND)).mean(axis=2)
+    on_table = mixture.foreign(*beyond) < _MOST_FOREIGN + _blur(mixture.foreign_noise, len(_BEYOND))
+    slack = 1.0 - _LEAST_COVERED + _blur(mixture.table_noise, int(inside.sum()))
+    table_outside = on_table & (light > _LEAST_LIGHT) & (np.abs(without) < slack)
+    object_inside = (thing[:, inside].mean(axis=1) > _LEAST_LIGHT) & (within > 1.0 - slack)
     return EdgeOffsets(
         offsets=covered.sum(axis=1) * _STEP - reach,
         mixed=1.0 - image.at_pixels(contour.pixels)[1] / light,
         valid=table_outside & object_inside & image.holds(columns, rows),
         empty=table_outside & (np.abs(within) < 1.0 - _LEAST_COVERED),
     )
+
+
+def _blur(noise: float, n: int) -> float:
+    """How far the mean of n samples may be off because of noise; every other of them is independent."""
+    excess = max(0.0, noise - _USUAL_NOISE)
+    return float(_N_SIGMA * excess / np.sqrt(max(1.0, 0.5 * n)))
 
 
 def _across(contour: Contour, distances: Array) -> Array:

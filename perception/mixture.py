@@ -25,10 +25,12 @@ class Mixture:
     Attributes:
         weights: The rows give p, q and r when multiplied by red, green, blue (0..255) and 1, shape (3, 4).
         colours: O, T and N are its columns, shape (3, 3).
+        noise: Standard deviation of the noise of the picture's pixels [0..255].
     """
 
     weights: Array
     colours: Array
+    noise: float
 
     @classmethod
     def of(cls, thing: Array, table: Array, noise: float = 1.0) -> "Mixture":
@@ -47,7 +49,18 @@ class Mixture:
         information = pair.T @ pair / noise**2 + 1.0 / _SHADE**2
         shares = np.linalg.solve(information, np.column_stack([pair.T / noise**2, np.full(2, _SHADE**-2)]))
         rest = np.append(neither / (neither @ neither), 0.0)
-        return cls(np.vstack([shares, rest]), np.column_stack([pair, neither]))
+        return cls(np.vstack([shares, rest]), np.column_stack([pair, neither]), noise)
+
+    @property
+    def table_noise(self) -> float:
+        """Standard deviation of the share q of the table in a pixel."""
+        return self.noise * float(np.linalg.norm(self.weights[1, :3]))
+
+    @property
+    def foreign_noise(self) -> float:
+        """Standard deviation of what ``foreign`` gives for a pixel of the table."""
+        rest = self.colours[:, [0, 2]] @ self.weights[[0, 2], :3]
+        return self.noise * float(np.linalg.norm(rest) / np.linalg.norm(self.colours[:, 1]))
 
     def foreign(self, thing: Array, table: Array, neither: Array) -> Array:
         """How much of colours, given by their shares, is not the table's; of what is; shape (n,)."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
@@ -102,19 +102,37 @@ def scene_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 
 
-def load_scene(name_or_path: str | Path) -> SceneDescription:
+def load_scene(name_or_path: str | Path, *, calibration: Path | None = None) -> SceneDescription:
     """Read a scene by the name of a packaged scene, or from a file whose name ends in ``.toml``.
 
     After either a variant may be named: ``sorting@wide``.
+
+    Args:
+        name_or_path: The scene.
+        calibration: File of the camera by which pictures are read; by default what the scene's file says.
 
     Raises:
         DescriptionError: If there is no such scene, or its file is not as it should be; the message names
             file, key, value and what is allowed.
     """
     name, variant = split_variant(str(name_or_path))
-    prepare = partial(apply_variant, variant=variant)
+    prepare = partial(_prepared, variant=variant, calibration=calibration)
     if Path(name).suffix == ".toml":
-        return read_description(Path(name), SceneDescription, prepare)
+        return read_description(Path(name), SceneDescription, partial(prepare, folder=Path(name).parent))
     if name not in scene_names():
         raise DescriptionError(f"no scene named '{name}'; choose one of: {', '.join(scene_names())}.")
     return read_description(_FOLDER / f"{name}.toml", SceneDescription, prepare)
+
+
+def _prepared(
+    content: dict[str, Any], *, variant: str | None, calibration: Path | None, folder: Path = _FOLDER
+) -> dict[str, Any]:
+    """What a scene's file says, with a variant's changes, and with the file of its camera as it is found."""
+    values = apply_variant(content, variant)
+    camera = values.get("camera")
+    if isinstance(camera, dict):
+        if isinstance(camera.get("calibration"), str):
+            camera["calibration"] = folder / camera["calibration"]
+        if calibration is not None:
+            camera["calibration"] = calibration
+    return values

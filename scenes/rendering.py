@@ -96,7 +96,7 @@ def take_picture(
     Raises:
         CobotError: If the picture is larger than the renderer can draw.
     """
-    camera = seen.camera
+    camera = seen.true_camera
     ideal = ideal_camera(camera)
     if renderer == "egl" and (ideal.width > _LARGEST_EGL[0] or ideal.height > _LARGEST_EGL[1]):
         raise CobotError(

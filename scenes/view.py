@@ -1,12 +1,14 @@
 """How a scene is seen: its camera and its light."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from cobot_lfd.camera import Camera
+from cobot_lfd.camera_file import load_camera
 from cobot_lfd.description_file import DescriptionModel
 from scenes.quantities import Positive, Share, Vector
 from scenes.shapes import ColourValue
@@ -51,6 +53,8 @@ class CameraDescription(DescriptionModel):
         lens: What the lens does to the picture.
         sensor: What the sensor does to the picture.
         samples: Points of a pixel that are averaged, a picture each; 1 leaves the edges jagged.
+        calibration: File of a camera as ``cobot-lfd calibrate`` writes it. Pictures are then read as that
+            camera's: where this one really stands, and what its lens does, only the renderer knows.
     """
 
     position: Vector
@@ -62,6 +66,7 @@ class CameraDescription(DescriptionModel):
     lens: Lens = Lens()
     sensor: Sensor = Sensor()
     samples: Annotated[int, Field(ge=1, le=16)] = 1
+    calibration: Path | None = None
 
     @model_validator(mode="after")
     def _looks_somewhere(self) -> "CameraDescription":
@@ -70,9 +75,25 @@ class CameraDescription(DescriptionModel):
             raise ValueError("up must not be parallel to the line from position to target.")
         return self
 
+    @model_validator(mode="after")
+    def _calibration_is_of_such_a_camera(self) -> "CameraDescription":
+        if self.calibration is not None:
+            known = load_camera(self.calibration)
+            if (known.width, known.height) != (self.width, self.height):
+                raise ValueError(
+                    f"calibration: {self.calibration} is of a camera of {known.width} x {known.height} px, "
+                    f"but this one takes {self.width} x {self.height} px; calibrate it: cobot-lfd calibrate."
+                )
+        return self
+
     @property
     def camera(self) -> Camera:
-        """The camera as a value that projects points."""
+        """The camera as far as it is known: calibrated, or as it is described. Pictures are read by it."""
+        return self.true_camera if self.calibration is None else load_camera(self.calibration)
+
+    @property
+    def true_camera(self) -> Camera:
+        """The camera as it is. Only for the renderer, and for judging a calibration."""
         ideal = Camera.looking_at(
             self.position,
             self.target,

@@ -11,8 +11,10 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
+from cobot_lfd.pose import Pose
 from perception import detect
 from perception.picture import Picture
+from robots import Arm, Kinematics, load_robot
 from scenes import SceneDescription, World, load_scene, object_models
 from scenes.rendering import Renderer
 from tests.renderers import needs_egl
@@ -170,12 +172,19 @@ def test_a_camera_with_a_part_of_the_picture_sees_the_same() -> None:
         assert_allclose(part.frame.position, whole.frame.position, atol=0.2e-3)
 
 
-def test_an_object_that_is_cut_off_is_not_seen() -> None:
-    column = int(CAMERA.project([*shot(3).frames["cube"].position, 0.04])[0])
-    camera, picture = cropped(CAMERA, shot(3).picture, column)
-    cube = detect(picture, camera, MODELS)[0]
-    assert isinstance(cube, NotSeen)
-    assert "cut off by the picture's edge" in cube.reason
+@pytest.mark.parametrize("seed", range(4))
+def test_an_object_that_is_cut_off_is_found_where_it_is_or_not_at_all(seed: int) -> None:
+    truth = shot(seed).frames["cube"]
+    middle = int(CAMERA.project([*truth.position, 0.04])[0])
+    half, little = (
+        detect(picture, camera, MODELS)[0]
+        for camera, picture in (cropped(CAMERA, shot(seed).picture, middle + cut) for cut in (-4, 10))
+    )
+    assert isinstance(half, Detection)
+    assert np.linalg.norm(errors(half, truth)[:2]) < 0.5e-3
+    assert half.confidence < 0.7
+    assert isinstance(little, NotSeen)
+    assert "cut off by the picture's edge" in little.reason
 
 
 def test_an_object_that_is_not_there_is_not_seen() -> None:
@@ -310,3 +319,46 @@ def test_distractors_of_another_colour_or_size_change_nothing() -> None:
             picture, truth = world.take_picture(), world.true_frames()
         for found in detect(picture, CAMERA, models):
             assert np.linalg.norm(errors(found, truth[found.name])[:2]) < 1e-3
+
+
+@pytest.mark.parametrize("angle", [0.2, 1.0, 2.1])
+def test_what_lies_across_an_object_does_not_hide_it(angle: float) -> None:
+    """A strip leaves two parts of each object, which are told to be one."""
+    v, u = np.indices((CAMERA.height, CAMERA.width))
+    for seed in range(2):
+        picture = shot(seed).picture.copy()
+        for model, half_width in zip(MODELS, (4.0, 10.0), strict=True):
+            x, y = CAMERA.project([*shot(seed).frames[model.name].position, model.z])
+            across = (u - x) * np.cos(angle) + (v - y) * np.sin(angle)
+            picture[(np.abs(across) < half_width) & (np.hypot(u - x, v - y) < 90)] = (70, 75, 80)
+        for found in detect(picture, CAMERA, MODELS):
+            assert np.linalg.norm(errors(found, shot(seed).frames[found.name])[:2]) < 0.5e-3
+
+
+@pytest.mark.parametrize("colours", [("white", "grey"), ("black", "white"), ("grey", "black")])
+def test_objects_without_a_hue_are_found(colours: tuple[str, str]) -> None:
+    values = SCENE.model_dump()
+    for name, colour in zip(("cube", "container"), colours, strict=True):
+        values["objects"][name]["colour"] = colour
+    scene = SceneDescription.model_validate(values)
+    for seed in range(2):
+        with World(scene, seed) as world:
+            picture, truth = world.take_picture(), world.true_frames()
+        for cast in ((1.0, 1.0, 1.0), (1.0, 0.9, 0.8)):
+            lit = np.rint(picture * np.array(cast)).astype(np.uint8)
+            for found in detect(lit, CAMERA, object_models(scene)):
+                assert np.linalg.norm(errors(found, truth[found.name])[:2]) < 1e-3
+
+
+def test_the_arm_may_reach_across_the_table() -> None:
+    """What it hides is found where it is or not at all; what it does not hide is found."""
+    robot = load_robot("panda")
+    for seed in range(2):
+        with World(SCENE, seed) as world, Kinematics(robot) as kinematics:
+            arm, truth = Arm(world.client, robot), world.true_frames()
+            above = Pose.from_rpy([*truth["cube"].position, 0.12], [np.pi, 0.0, 0.0])
+            arm.body.place(kinematics.inverse(above, np.array(robot.home)))
+            found = detect(world.take_picture(), CAMERA, MODELS)
+        for item in found:
+            if isinstance(item, Detection):
+                assert np.linalg.norm(errors(item, truth[item.name])[:2]) < 1e-3

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 
 from tyro.extras import subcommand_cli_from_dict
 
+from cobot_lfd.app.commands.calibrate import calibrate
 from cobot_lfd.app.commands.demo import demo
 from cobot_lfd.app.commands.demos import demos
 from cobot_lfd.app.commands.evaluate import evaluate
@@ -12,6 +13,7 @@ from cobot_lfd.app.commands.exit_codes import FAILED, INTERRUPTED
 from cobot_lfd.app.commands.fit import fit
 from cobot_lfd.app.commands.frames import frames
 from cobot_lfd.app.commands.listing import robots, scenes
+from cobot_lfd.app.commands.look import look
 from cobot_lfd.app.commands.record import record
 from cobot_lfd.app.commands.replay import replay
 from cobot_lfd.app.commands.report import report
@@ -30,6 +32,8 @@ _COMMANDS: dict[str, Callable[..., int]] = {
     "report": report,
     "replay": replay,
     "validate": validate,
+    "look": look,
+    "calibrate": calibrate,
     "scenes": scenes,
     "robots": robots,
 }

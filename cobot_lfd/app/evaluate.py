@@ -23,6 +23,7 @@ class Job:
         covered: Whether something covers the camera's lens.
         compliant: Whether the arm gives way during the carry where the demonstrations strayed.
         timing: How the motion along the path gets its times.
+        camera: File of the calibrated camera by which pictures are read; the scene's by default.
     """
 
     scene: str
@@ -31,6 +32,7 @@ class Job:
     covered: bool = False
     compliant: bool = False
     timing: TimingMethod = "simple"
+    camera: Path | None = None
 
 
 @lru_cache(maxsize=4)
@@ -41,7 +43,7 @@ def bench_for(job: Job) -> Bench:
         DescriptionError: If there is no such scene or robot.
         ModelError: If the model cannot be read.
     """
-    scene = load_scene(job.scene)
+    scene = load_scene(job.scene, calibration=job.camera)
     robot = load_robot(job.robot, scene.task.tool)
     return Bench(
         scene_name=job.scene,

@@ -9,6 +9,7 @@ from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
 from cobot_lfd.app.commands.options import require_positive
 from cobot_lfd.app.progress import progress
 from cobot_lfd.app.recording.record import record_session
+from cobot_lfd.errors import CobotError
 
 if TYPE_CHECKING:
     from cobot_lfd.app.studio.session import Session
@@ -22,6 +23,7 @@ def record(
     hand: Literal["scripted", "browser", "mouse"] = "scripted",
     demos: int = 6,
     seed: int = 0,
+    camera: Path | None = None,
     port: int | None = None,
     host: str | None = None,
     open: bool = True,  # noqa: A002 -- the option is called --no-open
@@ -35,17 +37,24 @@ def record(
         hand: Who leads: a script, or a person: in a browser, or with the mouse in the simulator's window.
         demos: How many demonstrations the script shows; a person records until the person ends it.
         seed: Of the first demonstration; each further one has the next.
+        camera: File of a calibrated camera (cobot-lfd calibrate), by which pictures are read.
         port: Of the page in the browser; a free one by default.
         host: Serve the page on this address of the machine, for other machines; it asks for a token then.
         open: Open the page in the browser.
     """
     require_positive("demos", demos)
     if hand == "browser":
+        if camera is not None:
+            raise CobotError(
+                "--camera needs --hand scripted; name the file in the scene: camera.calibration."
+            )
         return _in_browser(scene, robot, out, seed, port=port, host=host, show=open)
     if hand == "mouse":
         return _in_window(scene, robot, out, seed)
     with progress("recording", demos) as report:
-        episodes = record_session(scene, robot, out, n_episodes=demos, first_seed=seed, report=report)
+        episodes = record_session(
+            scene, robot, out, n_episodes=demos, first_seed=seed, report=report, camera=camera
+        )
     kept = sum(episode.verdict.succeeded for episode in episodes)
     print(f"{kept} of {demos} demonstrations did the task; they are in {out}")
     return DONE if kept == demos else NOT_ALL_SUCCEEDED

@@ -29,6 +29,7 @@ def run(
     demos: Path | None = None,
     video: Path | None = None,
     covered: bool = False,
+    camera: Path | None = None,
     compliant: bool = False,
     timing: TimingMethod = "simple",
 ) -> int:
@@ -44,11 +45,12 @@ def run(
         demos: Folder of the demonstrations that are to be in the plot.
         video: File (.webm) for a video of the arm.
         covered: Cover the camera's lens; the episode can then not succeed.
+        camera: File of a calibrated camera (cobot-lfd calibrate), by which the picture is read.
         compliant: Let the arm give way during the carry where the demonstrations strayed.
         timing: How the motion along the path gets its times: simple, or near_optimal, which is faster and
             takes longer to compute.
     """
-    bench = bench_for(Job(scene, robot, model, covered, compliant, timing))
+    bench = bench_for(Job(scene, robot, model, covered, compliant, timing, camera))
     with filming(video) if video else nullcontext() as film:
         episode = run_episode(bench, seed, film=film)
     print(f"seed {seed}: {episode.result.verdict.sentence}")

@@ -19,6 +19,9 @@ WHITE, DARK = (255, 255, 255), (20, 20, 20)
 X_COLOUR, Y_COLOUR = (255, 140, 60), (110, 235, 180)  # orange and green that colour-blind eyes tell apart
 OUTLINE_COLOUR, PATH_COLOUR = (240, 228, 66), (86, 180, 233)
 
+ELLIPSE_COLOUR = (255, 255, 255)
+
+_N_SIGMA, _MAGNIFIED = 3.0, 20.0  # of the error ellipses, which would be too small to be seen
 _ROOM_FOR_LETTER = 8.0  # [px] around the tip of an axis, where its name stands
 _SUBPIXEL_BITS = 4  # OpenCV draws at multiples of 1/16 px
 
@@ -32,6 +35,7 @@ def draw_detections(
     path: ArrayLike | None = None,
     path_z: float | None = None,
     scale: int = 2,
+    judged: bool = False,
 ) -> Picture:
     """Draw each object's outline, axes, name and standard errors on an enlarged copy of the camera's picture.
 
@@ -46,6 +50,7 @@ def draw_detections(
         path_z: Height at which the path is drawn [m]; None for that of the highest outline, so that path and
             frames are seen in one plane, or for the table where there are no models.
         scale: How many times the picture is enlarged, so that thin lines and small text stay legible.
+        judged: Whether to draw also how sure each place is, as an ellipse, and to write each confidence.
 
     Returns:
         RGB uint8, shape (scale * H, scale * W, 3).
@@ -58,7 +63,11 @@ def draw_detections(
     detections = tuple(detections)
     extents = [_draw_shape(canvas, detection, by_name.get(detection.name)) for detection in detections]
     for detection, extent in zip(detections, extents, strict=True):
-        _draw_label(canvas, detection, extent)
+        if judged:
+            _draw_ellipse(canvas, detection, by_name.get(detection.name))
+        _draw_label(canvas, detection, extent, judged=judged)
+    if judged:
+        canvas.note(f"ellipses: {_N_SIGMA:.0f} standard errors, drawn {_MAGNIFIED:.0f} times as large")
     return canvas.picture
 
 
@@ -99,13 +108,25 @@ def _draw_shape(canvas: "_Canvas", detection: Detection, model: ObjectModel | No
     return np.concatenate([detection.contour, tips - _ROOM_FOR_LETTER, tips + _ROOM_FOR_LETTER])
 
 
-def _draw_label(canvas: "_Canvas", detection: Detection, extent: Array) -> None:
+def _draw_ellipse(canvas: "_Canvas", detection: Detection, model: ObjectModel | None) -> None:
+    """How far off the position may be, magnified."""
+    around = np.linspace(0.0, 2 * np.pi, 49)[:-1]
+    spread, axes = np.linalg.eigh(detection.covariance[:2, :2])
+    circle = np.column_stack([np.cos(around), np.sin(around)])
+    radii = _MAGNIFIED * _N_SIGMA * np.sqrt(np.maximum(spread, 0.0))
+    z = 0.0 if model is None else model.z
+    canvas.polygon(canvas.project(detection.frame.position + circle * radii @ axes.T, z), ELLIPSE_COLOUR)
+
+
+def _draw_label(canvas: "_Canvas", detection: Detection, extent: Array, *, judged: bool) -> None:
     """Name and standard errors below the object, or above where there is no room below."""
     sigma = np.sqrt(np.diag(detection.covariance))
     millimetres, degrees = 1e3 * np.hypot(sigma[0], sigma[1]), np.rad2deg(sigma[2])
     lines = [detection.name, f"±{millimetres:.2f} mm  ±{degrees:.2f}°"]
-    if detection.confidence < 0.9:
-        lines.append(f"{100 * detection.confidence:.0f} % of its outline seen")
+    if judged:
+        lines.append(f"confidence {100 * detection.confidence:.0f} %")
+    elif detection.confidence < 0.9:
+        lines.append(f"only {100 * detection.confidence:.0f} % of it seen")
     canvas.text_below(extent, lines)
 
 
@@ -159,6 +180,10 @@ class _Canvas:
             width = 5.2 * self._scale * len(line)
             x = float(np.clip(left, 4.0, max(4.0, self.picture.shape[1] - width)))
             self._text(line, np.array([x, y + number * height]), WHITE)
+
+    def note(self, text: str) -> None:
+        """Words in the picture's lower left corner."""
+        self._text(text, np.array([6.0, self.picture.shape[0] - 4.0 * self._scale]), WHITE)
 
     def _text(self, text: str, origin: Array, colour: Colour) -> None:
         font, size, weight = cv2.FontFace("sans"), 9 * self._scale, 500

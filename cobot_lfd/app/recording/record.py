@@ -20,18 +20,21 @@ from robots import Arm, load_robot
 from scenes import SceneDescription, World, check_success, load_scene
 
 
-def record_episode(scene_name: str, robot_name: str, seed: int) -> RecordedEpisode:
+def record_episode(
+    scene_name: str, robot_name: str, seed: int, *, camera: Path | None = None
+) -> RecordedEpisode:
     """One demonstration by the scripted hand.
 
     Args:
         scene_name: Name of the scene.
         robot_name: Name of the robot.
         seed: Decides the scene's layout and how the hand varies.
+        camera: File of the calibrated camera by which the picture is read; the scene's by default.
 
     Raises:
         DescriptionError: If there is no such scene or robot.
     """
-    scene = load_scene(scene_name)
+    scene = load_scene(scene_name, calibration=camera)
     robot = load_robot(robot_name, scene.task.tool)
     with World(scene, seed) as world:
         arm = Arm(world.client, robot)
@@ -104,6 +107,7 @@ def record_session(
     n_episodes: int,
     first_seed: int,
     report: Callable[[str], None] | None = None,
+    camera: Path | None = None,
 ) -> list[RecordedEpisode]:
     """Record demonstrations into a folder; each is safe on disk before the next begins.
 
@@ -114,6 +118,7 @@ def record_session(
         n_episodes: How many to record.
         first_seed: Of the first episode; the next ones count upwards, leaving out seeds that the folder has.
         report: Called with a sentence after each episode.
+        camera: File of the calibrated camera by which pictures are read; the scene's by default.
 
     Raises:
         DescriptionError: If there is no such scene or robot.
@@ -125,7 +130,7 @@ def record_session(
     fresh_seeds = (seed for seed in count(first_seed) if seed not in taken)
     episodes = []
     for seed in islice(fresh_seeds, n_episodes):
-        episode = record_episode(scene_name, robot_name, seed)
+        episode = record_episode(scene_name, robot_name, seed, camera=camera)
         file = save_episode(folder, episode)
         if report is not None:
             report(f"{file}: {episode.verdict.sentence}")
