@@ -21,9 +21,10 @@ _TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
 _BLOCK = 4  # Side of the squares of pixels within which errors hang together [px].
+_N_EVEN = 5  # Unknowns where the light is even; at first it always is, until the pose is nearly right.
 _FEWEST_PIXELS = 60
 _LEAST_INSIDE = 0.3  # Share of a face that must lie in the picture.
-_RIDGE = 1e-3 * np.eye(5)  # Keeps what no pixel tells anything about where it is.
+_RIDGE = 1e-3 * np.eye(7)  # Keeps what no pixel tells anything about where it is.
 _DARK = 20.0  # Brightness below which a ratio tells little [0..255].
 _LEAST_CONTRAST = 0.2  # Of the picture, compared with the face; below, it shows something else.
 _LEAST_ERROR = 0.03  # How far off the picture is from which the face was learnt [px]; found by measuring.
@@ -56,12 +57,14 @@ class _Level:
         brightness: How bright they are [0..255], shape (n,).
         gradients: Of the brightness, along the frame's axes [1/m], shape (n, 2).
         blocks: Number of the square that each lies in, shape (n,).
+        shades: How the brightness changes with each of the light's numbers, shape (n, 4).
     """
 
     local: Array
     brightness: Array
     gradients: Array
     blocks: NDArray[np.int_]
+    shades: Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,11 +103,14 @@ def _level(
     smooth = np.asarray(cv2.GaussianBlur(grey, (0, 0), blur), np.float64)
     rows, columns = (stride * indices for indices in np.nonzero(mask[::stride, ::stride]))
     down, right = (np.gradient(smooth, axis=axis)[rows, columns] for axis in (0, 1))
+    local, brightness = appearance.to_local(np.column_stack([columns, rows])), smooth[rows, columns]
+    u, v = (local / np.abs(local).max()).T
     return _Level(
-        local=appearance.to_local(np.column_stack([columns, rows])),
-        brightness=smooth[rows, columns],
+        local=local,
+        brightness=brightness,
         gradients=np.column_stack([right, -down]) / appearance.metres_per_pixel,
         blocks=(rows // _BLOCK) * (grey.shape[1] // _BLOCK + 1) + columns // _BLOCK,
+        shades=np.column_stack([brightness, np.ones_like(brightness), brightness * u, brightness * v]),
     )
 
 
@@ -113,11 +119,13 @@ def blurred(grey: NDArray[np.uint8]) -> list[NDArray[Any]]:
     return [np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), blur)) for blur in _BLURS]
 
 
-def fit_face(pictures: list[NDArray[Any]], camera: Camera, face: Face, start: Frame) -> FaceFit | None:
+def fit_face(
+    pictures: list[NDArray[Any]], camera: Camera, face: Face, start: Frame, *, even: bool = True
+) -> FaceFit | None:
     """Move a face until its pixels look as they are expected to look.
 
     Gauss-Newton on the differences of brightness, with the face's own gradients as in inverse compositional
-    alignment (Baker and Matthews 2004), for the pose together with contrast and brightness of the light;
+    alignment (Baker and Matthews 2004), for the pose together with the light;
     Tukey's weights leave out what covers the face.
 
     Args:
@@ -125,6 +133,7 @@ def fit_face(pictures: list[NDArray[Any]], camera: Camera, face: Face, start: Fr
         camera: The camera that took it.
         face: The face.
         start: Where it is, to a few pixels.
+        even: Whether the light is taken to be even across the face; if not, a cover may pass for shade.
 
     Returns:
         The fit; None if the face leaves the picture, or too little of it is seen.
@@ -138,10 +147,13 @@ def fit_face(pictures: list[NDArray[Any]], camera: Camera, face: Face, start: Fr
             seen, inside = _seen(picture, camera, level, face.z, frame)
             if inside.mean() < _LEAST_INSIDE:
                 return None
-            errors = seen - light[0] * level.brightness - light[1]
+            errors = seen - level.shades @ light
             jacobian = _jacobian(level, frame, light)
             weighted = jacobian * _weights(errors, inside)[:, None]
-            step = -np.linalg.solve(weighted.T @ jacobian + _RIDGE, weighted.T @ errors)
+            free = _N_EVEN if even or level is face.levels[0] else len(weighted.T)
+            information = weighted[:, :free].T @ jacobian[:, :free] + _RIDGE[:free, :free]
+            step = np.zeros(len(weighted.T))
+            step[:free] = -np.linalg.solve(information, weighted[:, :free].T @ errors)
             frame = Frame(frame.position + step[:2], frame.angle + step[2])
             light = light + step[3:]
             if np.abs(step[:3]).max() < _SMALL_STEP:
@@ -161,19 +173,23 @@ def _seen(
 
 
 def _first_light(expected: Array, seen: Array) -> Array:
-    """Contrast and brightness [0..255] of the light as it seems at first: some factor, shape (2,)."""
-    return np.array([float(np.median(seen / np.maximum(expected, _DARK))), 0.0])
+    """The light as it seems at first, an even factor, shape (4,).
+
+    Its numbers are a factor of the face's brightness, what is added to it [0..255], and how much the factor
+    grows towards the ends of the frame's axes.
+    """
+    return np.array([float(np.median(seen / np.maximum(expected, _DARK))), 0.0, 0.0, 0.0])
 
 
 def _jacobian(level: _Level, frame: Frame, light: Array) -> Array:
     """How much brighter each pixel is seen by a step in x, y and angle, and expected by one of the light's.
 
-    Its sign is that of the difference between seen and expected, shape (n, 5).
+    Its sign is that of the difference between seen and expected, shape (n, 7).
     """
     in_world = light[0] * level.gradients @ frame.rotation.T
     x, y = (level.local @ frame.rotation.T).T
     by_angle = in_world[:, 1] * x - in_world[:, 0] * y
-    return np.column_stack([in_world, by_angle, -level.brightness, -np.ones_like(x)])
+    return np.column_stack([in_world, by_angle, -level.shades])
 
 
 def _weights(errors: Array, inside: NDArray[np.bool_]) -> Array:
@@ -190,14 +206,14 @@ def _judged(picture: NDArray[Any], camera: Camera, face: Face, frame: Frame, lig
     """
     level = face.levels[-1]
     seen, inside = _seen(picture, camera, level, face.z, frame)
-    errors = seen - light[0] * level.brightness - light[1]
+    errors = seen - level.shades @ light
     weights = _weights(errors, inside)
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
         return None
     jacobian = _jacobian(level, frame, light)
     weighted = jacobian * weights[:, None]
-    pulls = np.zeros((level.blocks.max() + 1, 5))
+    pulls = np.zeros((level.blocks.max() + 1, jacobian.shape[1]))
     np.add.at(pulls, level.blocks, weighted * errors[:, None])
     inverse = np.linalg.inv(weighted.T @ jacobian + _RIDGE)
     covariance = (inverse @ (pulls.T @ pulls) @ inverse)[:3, :3] + np.diag(face.least_error**2)
@@ -205,7 +221,9 @@ def _judged(picture: NDArray[Any], camera: Camera, face: Face, frame: Frame, lig
         frame,
         covariance,
         shown=float(shown.mean()),
-        correlation=_correlation(level.brightness[shown], seen[shown]) if light[0] > _LEAST_CONTRAST else 0.0,
+        correlation=_correlation((level.shades @ light)[shown], seen[shown])
+        if light[0] > _LEAST_CONTRAST
+        else 0.0,
     )
 
 

@@ -24,6 +24,8 @@ _TOLERANCE = 3.0  # How far a point may be from where a pose puts it, in pixels 
 _N_POSES = 6  # Tried for each object, and for each that looks the same.
 _LEAST_SHOWN = 0.35  # Share of a face's pixels that must look as they should.
 _LEAST_CORRELATION = 0.75  # Of their brightness with the expected.
+_SHOWN_IN_SHADE = 0.8  # The same two where the light is taken to be uneven, which explains much.
+_CORRELATION_IN_SHADE = 0.9
 _CERTAIN = 0.65  # Share times correlation from which on no other places are tried.
 _SAME_PLACE = 0.3  # Two poses closer than this share of a face's size are one object.
 _DARKEST = 12.0  # Mean brightness below which a picture shows nothing [0..255].
@@ -113,11 +115,19 @@ def _try(
     fits: list[FaceFit] = []
     for pose in poses:
         fit = fit_face(images, camera, reference.face, pose)
-        if fit is not None:
-            fits.append(fit)
+        if fit is None:
+            continue
+        shaded = fit_face(images, camera, reference.face, fit.frame, even=False)
+        fits.append(fit if shaded is None or not _explains_more(shaded, fit) else shaded)
         if sum(_score(each) > _CERTAIN for each in fits) >= len(group):
             break
     return fits
+
+
+def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
+    """Whether uneven light explains a face, and not what covers it, which would be like it in shape only."""
+    least = max(even.correlation, _CORRELATION_IN_SHADE)
+    return shaded.shown > _SHOWN_IN_SHADE and shaded.correlation > least
 
 
 def _score(fit: FaceFit) -> float:
