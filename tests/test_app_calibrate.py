@@ -18,9 +18,7 @@ DISTORTION = (-0.2, 0.05, 0.001, -0.001, 0.0)
 
 
 def distorted() -> SceneDescription:
-    """With small pictures, which are drawn quickly."""
     content = SCENE.model_dump()
-    content["camera"] |= {"width": 320, "height": 240}
     content["camera"]["lens"] = {"distortion": DISTORTION, "blur": 0.4}
     content["camera"]["sensor"]["noise"] = 2.0
     return SceneDescription.model_validate(content)
@@ -28,8 +26,8 @@ def distorted() -> SceneDescription:
 
 @pytest.mark.simulator
 def test_a_distorted_noisy_camera_is_found_out_by_a_board_in_the_hand(tmp_path: Path) -> None:
-    """From ten small pictures; then a scene that knows no more of its camera finds its objects."""
-    session = calibrate(distorted(), load_robot("panda"), n_views=10, seed=0)
+    """From eight pictures only; then a scene that knows no more of its camera finds its objects."""
+    session = calibrate(distorted(), load_robot("panda"), n_views=8, seed=0)
     errors = session.errors()
     assert session.found.residual < 0.3  # [px]
     assert errors.focal_percent < 0.3
