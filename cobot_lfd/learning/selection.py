@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.learning.course.course import VISITED, held_out_errors, task_size
@@ -131,5 +131,5 @@ def _as_good(candidate: Array, best: Array) -> bool:
     """Whether a paired t-test finds no difference, or one that does not matter."""
     difference = candidate - best
     n = len(difference)
-    chance = student.ppf(CONFIDENCE, n - 1) * difference.std(ddof=1) / np.sqrt(n)
+    chance = stdtrit(n - 1, CONFIDENCE) * difference.std(ddof=1) / np.sqrt(n)
     return bool(difference.mean() <= max(chance, np.log1p(MARGIN)))

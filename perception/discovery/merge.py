@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import Detection, NotSeen
@@ -124,7 +124,7 @@ def rigid(first: Track, second: Track) -> Rigid | None:
     relative = _like_the_first([_relative_choices(a, b) for a, b in both])
     offset = _mean(relative)
     statistic = sum(_misfit(pose, offset, a, b) for pose, (a, b) in zip(relative, both, strict=True))
-    return Rigid(offset, float(statistic), float(chi2.ppf(_CONFIDENCE, 3 * (len(both) - 1))))
+    return Rigid(offset, float(statistic), float(chdtri(3 * (len(both) - 1), 1 - _CONFIDENCE)))
 
 
 def _relative_choices(a: Detection, b: Detection) -> list[Frame]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from scipy.stats import binomtest
+from scipy.special import bdtr
 
 from cobot_lfd.app.report.cells import Condition, condition_of
 from cobot_lfd.app.results import EpisodeResult
@@ -53,7 +53,7 @@ def comparisons_of(results: Sequence[EpisodeResult]) -> list[Comparison]:
 def mcnemar(only_first: int, only_second: int) -> float:
     """P-value of McNemar's exact test: is a disagreement as likely one way as the other?"""
     disagreements = only_first + only_second
-    return float(binomtest(only_first, disagreements, 0.5).pvalue) if disagreements else 1.0
+    return min(1.0, 2.0 * float(bdtr(min(only_first, only_second), disagreements, 0.5)))
 
 
 def _compare(
