@@ -5,6 +5,7 @@ of a few seeds, the cells that matter most first, so that it can be stopped at a
 stays in the folder, the same command goes on where it was, and the table is made of what is there.
 """
 
+import fcntl
 import sys
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -180,11 +181,14 @@ def _drive(executor: Executor, at_once: int, trials: Sequence[Trial]) -> Iterato
 
 
 def _demonstrations(out: Path, scene: str, n: int) -> Path:
-    """A folder with demonstrations of a scene."""
+    """A folder with demonstrations of a scene; two processes that want the same ones do not both record."""
     folder = out / "demonstrations" / scene
-    missing = n - len(list_episodes(folder) if folder.is_dir() else ())
-    if missing > 0:
-        record_session(scene, TEACHER, folder, n_episodes=missing, first_seed=0)
+    folder.mkdir(parents=True, exist_ok=True)
+    with (out / "demonstrations" / f"{scene}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        missing = n - len(list_episodes(folder))
+        if missing > 0:
+            record_session(scene, TEACHER, folder, n_episodes=missing, first_seed=0)
     return folder
 
 
