@@ -273,7 +273,7 @@ def main() -> int:
                 if time.monotonic() > end:
                     break
                 ledger.do(unit)
-            if missing:
+            if missing and all(ledger.known(unit) for unit in missing):
                 print(f"round {number + 1} of {plan.sets}", file=sys.stderr, flush=True)
         text = page(plan, ledger)
     target = options.out / "paper_tables.md"
