@@ -1,6 +1,6 @@
-"""Compose the README's picture from the files that ``make demo`` leaves behind.
+"""Compose the README's picture from the files that ``cobot-lfd demo`` leaves behind.
 
-Usage: python tools/readme_picture.py demo docs/pick_and_place.jpg
+Usage: python tools/readme_picture.py demo docs/handover.jpg
 """
 
 import sys
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Picture = NDArray[np.uint8]
-HEIGHT = 420  # [px]
+WIDTH = 1280  # [px]; a page shows about 900 of them, at which the plot's text is still read
 SHARE_OF_THE_VIDEO = 0.5  # the arm carries the part
+QUALITY = 85  # of the JPEG, in percent
 
 
 def still(video: Path, share: float) -> Picture:
@@ -22,25 +23,28 @@ def still(video: Path, share: float) -> Picture:
     while (frame := capture.read())[0]:
         pictures.append(np.asarray(frame[1], dtype=np.uint8))
     if not pictures:
-        raise SystemExit(f"{video} holds no picture; run 'make demo' first.")
+        raise SystemExit(f"{video} holds no picture; run 'cobot-lfd demo' first.")
     return pictures[round(share * (len(pictures) - 1))]
 
 
-def scaled(picture: Picture) -> Picture:
-    """The picture at the common height."""
-    width = round(picture.shape[1] * HEIGHT / picture.shape[0])
-    return np.asarray(cv2.resize(picture, (width, HEIGHT), interpolation=cv2.INTER_AREA), dtype=np.uint8)
+def scaled(picture: Picture, width: int) -> Picture:
+    """The picture at a width."""
+    height = round(picture.shape[0] * width / picture.shape[1])
+    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
 def main(folder: Path, file: Path) -> None:
-    """Put what the camera saw, the generated path and the arm side by side."""
+    """What the camera saw beside the arm at work, and below them what was shown and what was learnt."""
     pictures = [cv2.imread(str(folder / name)) for name in ("camera.png", "path.png")]
     if any(picture is None for picture in pictures):
-        raise SystemExit(f"{folder} lacks camera.png or path.png; run 'make demo' first.")
-    shown = [*pictures, still(folder / "run.webm", SHARE_OF_THE_VIDEO)]
-    row = np.hstack([scaled(np.asarray(picture, dtype=np.uint8)) for picture in shown])
+        raise SystemExit(f"{folder} lacks camera.png or path.png; run 'cobot-lfd demo' first.")
+    camera, plot = (np.asarray(picture, dtype=np.uint8) for picture in pictures)
+    arm = still(folder / "run.webm", SHARE_OF_THE_VIDEO)
+    seen, done = scaled(camera, WIDTH // 2), scaled(arm, WIDTH // 2)
+    height = min(len(seen), len(done))
     file.parent.mkdir(parents=True, exist_ok=True)
-    cv2.imwrite(str(file), row, [cv2.IMWRITE_JPEG_QUALITY, 88])
+    rows = np.vstack([np.hstack([seen[:height], done[:height]]), scaled(plot, WIDTH)])
+    cv2.imwrite(str(file), rows, [cv2.IMWRITE_JPEG_QUALITY, QUALITY] if file.suffix == ".jpg" else [])
     print(file)
 
 
