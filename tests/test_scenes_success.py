@@ -28,11 +28,22 @@ def settle(world: World, n_steps: int = 150) -> None:
         world.step()
 
 
-def test_a_peg_that_stands_in_its_slot_is_success() -> None:
+def test_a_peg_that_came_along_its_slot_and_stands_in_it_is_success() -> None:
     with World(PEG, 0) as world:
+        put(world, "peg", "slot", [-0.05, 0.0, 0.035])
+        world.step()
         put(world, "peg", "slot", [0.0, 0.0, 0.03])
         settle(world)
         assert check_success(world).outcome is Outcome.SUCCESS
+
+
+def test_a_peg_that_came_into_its_slot_from_above_is_no_success() -> None:
+    with World(PEG, 0) as world:
+        put(world, "peg", "slot", [0.0, 0.0, 0.03])
+        settle(world)
+        verdict = check_success(world)
+    assert verdict.outcome is Outcome.NOT_PLACED
+    assert verdict.detail == "the peg did not pass the slot"
 
 
 def test_a_peg_before_its_slot_is_told_with_its_distance() -> None:
@@ -54,7 +65,10 @@ def test_a_peg_that_lies_in_its_slot_has_tipped_over() -> None:
 
 
 def drop_into_hand(height: float) -> Outcome:
+    """What becomes of a board that came in at the palm's open side and is let go at a height [m]."""
     with World(HANDOVER, 0) as world:
+        put(world, "board", "hand", [-0.08, 0.0, 0.03])
+        world.step()
         put(world, "board", "hand", [0.0, 0.0, height])
         settle(world, 400)
         return check_success(world).outcome
