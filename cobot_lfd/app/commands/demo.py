@@ -20,7 +20,7 @@ _SHOWN = {
 
 def demo(
     *,
-    scene: str = "handover",
+    scene: str = "ball_in_hole",
     robot: str = "panda",
     out: Path = Path("demo"),
     demos: int = 6,
