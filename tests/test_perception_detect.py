@@ -362,3 +362,15 @@ def test_the_arm_may_reach_across_the_table() -> None:
         for item in found:
             if isinstance(item, Detection):
                 assert np.linalg.norm(errors(item, truth[item.name])[:2]) < 1e-3
+
+
+@pytest.mark.parametrize("seed", [1008, 10018])
+def test_a_raised_floor_may_hide_the_foot_of_a_wall(seed: int) -> None:
+    """The hole stands at the picture's edge, seen so aslant that its floor hides a tenth of its outline."""
+    scene = load_scene("ball_in_hole")
+    with World(scene, seed) as world:
+        found = detect(world.take_picture(), scene.camera.camera, object_models(scene))
+        (hole,) = (thing for thing in found if thing.name == "hole")
+        off = errors(hole, world.true_frames()["hole"])
+    assert np.linalg.norm(off[:2]) < 0.5e-3
+    assert abs(off[2]) < np.deg2rad(0.3)

@@ -1,6 +1,6 @@
 """Compose the README's picture from the files that ``cobot-lfd demo`` leaves behind.
 
-Usage: python tools/readme_picture.py demo docs/handover.jpg
+Usage: python tools/readme_picture.py demo docs/ball_in_hole.jpg
 """
 
 import sys
