@@ -84,7 +84,7 @@ class Person:
         self.page = browser.new_page(viewport={"width": 900, "height": 480})  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)
-        self.page.get_by_text("Start [R]").wait_for(timeout=90_000)
+        self.page.get_by_text("Start [R]", exact=True).wait_for(timeout=90_000)
         self.wait_until(lambda: set(studio.server.get_clients()) - before, "the tab is known", 60)
         [self.tab] = set(studio.server.get_clients()) - before
 

@@ -68,7 +68,6 @@ def test_a_person_teaches_the_arm_in_a_browser(
         person = Person(browser, studio)
         person.wait_for_mode(Mode.READY)
         session = studio.session
-        age = _pose_age(person)
         for i in range(2):
             demonstrate(person)
             assert len(session.kept.good) == i + 1, session.kept.episodes[i].verdict.sentence
@@ -91,7 +90,7 @@ def test_a_person_teaches_the_arm_in_a_browser(
         person.wait_for_mode(Mode.TRYING)
         person.wait_for_mode(Mode.READY)
         assert any("the task is done" in sentence for sentence in said), said
-        _report(studio, age, capsys)
+        _report(studio, _pose_age(person), capsys)
     for file in list_episodes(tmp_path / "demos"):
         carry = load_episode(file).demonstration()
         assert np.linalg.norm(carry.path[-1] - carry.frames["container"].position) < 0.03
