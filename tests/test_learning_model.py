@@ -122,3 +122,9 @@ def test_lengths_and_sampling_may_differ() -> None:
     second = TaskParameterisedGMM.fit(other).reproduce(new_scene())
     assert_allclose(first.mean, second.mean, atol=0.01)
     assert second.times[-1] == pytest.approx(3.0)
+
+
+def test_a_planar_model_refuses_spatial_frames() -> None:
+    spatial = draw_scene(TASKS[2], np.random.default_rng(1))
+    with pytest.raises(ModelError, match="have 3 dimensions, the model was learnt in 2"):
+        fitted("improved").reproduce(spatial)

@@ -202,7 +202,15 @@ class TaskParameterisedGMM:
 
         Returns:
             Means [m], shape (S, T, d), and covariances [m²], shape (S, T, d, d).
+
+        Raises:
+            ModelError: If the scenes are spatial and the model is planar, or the other way round.
         """
+        if scenes.positions.shape[-1] != self.dimension:
+            raise ModelError(
+                f"the scene's frames have {scenes.positions.shape[-1]} dimensions, the model was learnt in "
+                f"{self.dimension}; give it frames of the same kind as the demonstrations'."
+            )
         return self.generator.generate(scenes, n_steps)
 
     def save(self, path: Path | str) -> None:
