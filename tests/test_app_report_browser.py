@@ -68,7 +68,8 @@ def test_the_page_fits_and_asks_for_nothing(
     plots = page.locator("svg[role=img]")
     assert plots.count() == 2
     assert plots.first.get_attribute("aria-label") == "Success over noise of the seen position [mm]"
-    assert all(plot.bounding_box()["width"] > 0.75 * min(width, 600) for plot in plots.all())  # type: ignore[index]
+    boxes = [plot.bounding_box() for plot in plots.all()]
+    assert all(box is not None and box["width"] > 0.75 * min(width, 600) for box in boxes)
     assert page.evaluate(_SMALLEST_TEXT) >= 12  # [px]
     assert [address for address in asked if not address.startswith("data:")] == [page_address]
 

@@ -43,4 +43,4 @@ def test_an_age_that_is_put_in_comes_out(age: float) -> None:
 
 
 def test_too_few_pictures_tell_no_age() -> None:
-    assert np.isnan(ages(Page(rows(0.1)[:4]), Lowered()).median)  # type: ignore[arg-type]
+    assert np.isnan(ages(Page(rows(0.1)[:4]), Lowered()).median)  # type: ignore[arg-type]  # as above
