@@ -58,7 +58,7 @@ class Scenes:
         """The same scenes with these frames only."""
         return Scenes(self.positions[:, frames], self.rotations[:, frames])
 
-    def only(self, scenes: Sequence[int]) -> "Scenes":
+    def only(self, scenes: Sequence[int] | slice) -> "Scenes":
         """These scenes only."""
         return Scenes(self.positions[scenes], self.rotations[scenes])
 

@@ -57,6 +57,9 @@ STORED: tuple[type, ...] = (
 )
 """What a model file may hold."""
 
+SCENES_AT_ONCE = 64
+"""Scenes whose paths are computed together: many, but few enough for a processor's cache."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TaskParameterisedGMM:
@@ -211,7 +214,12 @@ class TaskParameterisedGMM:
                 f"the scene's frames have {scenes.positions.shape[-1]} dimensions, the model was learnt in "
                 f"{self.dimension}; give it frames of the same kind as the demonstrations'."
             )
-        return self.generator.generate(scenes, n_steps)
+        s, d = len(scenes), self.dimension
+        means, covariances = np.empty((s, n_steps, d)), np.empty((s, n_steps, d, d))
+        for start in range(0, s, SCENES_AT_ONCE):
+            part = slice(start, start + SCENES_AT_ONCE)
+            means[part], covariances[part] = self.generator.generate(scenes.only(part), n_steps)
+        return means, covariances
 
     def save(self, path: Path | str) -> None:
         """Write the model to a file that holds numbers and text only."""

@@ -205,5 +205,5 @@ def follow(paths: Array, progress: Array, carried: Array | None = None) -> Array
     part = (np.tile(progress, s) - left) / np.maximum(step, np.finfo(float).tiny)
     part = np.clip(part, 0.0, 1.0)[:, None]
     table = (paths if carried is None else carried).reshape(s * u, -1)
-    before = table[right - 1]
-    return np.asarray(before + (table[right] - before) * part).reshape(s, len(progress), -1)
+    before = table.take(right - 1, axis=0)  # Several times as fast as indexing with brackets.
+    return np.asarray(before + (table.take(right, axis=0) - before) * part).reshape(s, len(progress), -1)
