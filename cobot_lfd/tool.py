@@ -43,11 +43,11 @@ class ToolTurn:
         return cls(yaw, yaw)
 
     def along(self, path: ArrayLike) -> Array:
-        """The yaw [rad], shape (M,), at each point of a path [m], shape (M, 2); it changes smoothly."""
+        """The yaw [rad], shape (M,), at each point of a path [m], shape (M, 2), with little jerk along it."""
         lengths = np.linalg.norm(np.diff(np.asarray(path, dtype=np.float64), axis=0), axis=1)
         shares = np.concatenate([[0.0], np.cumsum(lengths)]) / max(lengths.sum(), 1e-12)
         u = np.clip((shares - self.begins) / max(self.ends - self.begins, 1e-12), 0.0, 1.0)
-        return np.asarray(self.start + (self.end - self.start) * u * u * (3.0 - 2.0 * u))
+        return np.asarray(self.start + (self.end - self.start) * u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
 
 
 def equal_yaws(direction: float, turns: int, preferred: float = 0.0) -> list[float]:

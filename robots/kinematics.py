@@ -19,9 +19,7 @@ from robots.collision import CollisionCheck
 from robots.description import RobotDescription
 
 _TOLERANCE = 1e-6  # of position [m] and rotation [rad]
-_SETTLED = (
-    1e-4  # [rad]; a step this small means that the posture has settled, so that the joint path is smooth
-)
+_SETTLED = 1e-6  # [rad]; what smaller steps would still change bends a joint path by nothing that takes time
 _MAX_STEPS = 100
 _POSTURE_GAIN = 0.8  # share of the way to the home posture per step, where the task leaves it free
 _MAX_JOINT_STEP = 0.3  # [rad]; far goals are approached in steps for which the Jacobian still speaks
