@@ -14,8 +14,8 @@ _Pixels = Annotated[int, Field(ge=1)]
 _Row = tuple[float, float, float]
 
 
-class _CameraFile(DescriptionModel):
-    """What the file holds; see ``Camera`` for the meaning."""
+class CameraValues(DescriptionModel):
+    """A camera in plain numbers, as its file holds them; see ``Camera`` for the meaning."""
 
     width: _Pixels
     height: _Pixels
@@ -24,6 +24,12 @@ class _CameraFile(DescriptionModel):
     position: _Row
     quaternion: tuple[float, float, float, float]
 
+    @property
+    def camera(self) -> Camera:
+        """The camera of these values."""
+        pose = Pose.from_quaternion(self.position, self.quaternion)
+        return Camera(self.width, self.height, np.array(self.matrix), pose, np.array(self.distortion))
+
 
 def load_camera(file: Path) -> Camera:
     """The camera that a file describes.
@@ -31,14 +37,16 @@ def load_camera(file: Path) -> Camera:
     Raises:
         DescriptionError: If the file cannot be read, or holds a key or value that is not allowed.
     """
-    content = read_description(file, _CameraFile)
-    return Camera(
-        content.width,
-        content.height,
-        np.array(content.matrix),
-        Pose.from_quaternion(content.position, content.quaternion),
-        np.array(content.distortion),
-    )
+    return read_camera_values(file).camera
+
+
+def read_camera_values(file: Path) -> CameraValues:
+    """What a camera's file holds.
+
+    Raises:
+        DescriptionError: If the file cannot be read, or holds a key or value that is not allowed.
+    """
+    return read_description(file, CameraValues)
 
 
 def save_camera(camera: Camera, file: Path) -> None:

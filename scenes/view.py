@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from cobot_lfd.camera import Camera
-from cobot_lfd.camera_file import load_camera
+from cobot_lfd.camera_file import CameraValues, load_camera
 from cobot_lfd.description_file import DescriptionModel
 from scenes.quantities import Positive, Share, Vector
 from scenes.shapes import ColourValue
@@ -53,8 +53,9 @@ class CameraDescription(DescriptionModel):
         lens: What the lens does to the picture.
         sensor: What the sensor does to the picture.
         samples: Points of a pixel that are averaged, a picture each; 1 leaves the edges jagged.
-        calibration: File of a camera as ``cobot-lfd calibrate`` writes it. Pictures are then read as that
-            camera's: where this one really stands, and what its lens does, only the renderer knows.
+        calibration: A camera's file as ``cobot-lfd calibrate`` writes it, or what it holds. Pictures are then
+            read as that camera's: where this one really stands, and what its lens does, only the renderer
+            knows.
     """
 
     position: Vector
@@ -66,7 +67,7 @@ class CameraDescription(DescriptionModel):
     lens: Lens = Lens()
     sensor: Sensor = Sensor()
     samples: Annotated[int, Field(ge=1, le=16)] = 1
-    calibration: Path | None = None
+    calibration: Path | CameraValues | None = None
 
     @model_validator(mode="after")
     def _looks_somewhere(self) -> "CameraDescription":
@@ -78,10 +79,11 @@ class CameraDescription(DescriptionModel):
     @model_validator(mode="after")
     def _calibration_is_of_such_a_camera(self) -> "CameraDescription":
         if self.calibration is not None:
-            known = load_camera(self.calibration)
+            known = self.camera
             if (known.width, known.height) != (self.width, self.height):
+                name = self.calibration if isinstance(self.calibration, Path) else "it"
                 raise ValueError(
-                    f"calibration: {self.calibration} is of a camera of {known.width} x {known.height} px, "
+                    f"calibration: {name} is of a camera of {known.width} x {known.height} px, "
                     f"but this one takes {self.width} x {self.height} px; calibrate it: cobot-lfd calibrate."
                 )
         return self
@@ -89,7 +91,11 @@ class CameraDescription(DescriptionModel):
     @property
     def camera(self) -> Camera:
         """The camera as far as it is known: calibrated, or as it is described. Pictures are read by it."""
-        return self.true_camera if self.calibration is None else load_camera(self.calibration)
+        if self.calibration is None:
+            return self.true_camera
+        return (
+            load_camera(self.calibration) if isinstance(self.calibration, Path) else self.calibration.camera
+        )
 
     @property
     def true_camera(self) -> Camera:

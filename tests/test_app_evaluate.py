@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import scenes
 from cobot_lfd.app.demonstrations.store import load_demonstrations, load_episode
 from cobot_lfd.app.evaluation.contender import Contender, fit_method, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_from_bytes, demonstrations_to_bytes
@@ -15,13 +16,16 @@ from cobot_lfd.app.evaluation.measures import hand_path, measures_beside
 from cobot_lfd.app.evaluation.options import PlanOptions
 from cobot_lfd.app.evaluation.perform import bench_of, perform
 from cobot_lfd.app.evaluation.perturbation import Perturbation, Sweep
-from cobot_lfd.app.evaluation.plan import Plan
+from cobot_lfd.app.evaluation.plan import Plan, fingerprints
 from cobot_lfd.app.evaluation.run import Where, run
 from cobot_lfd.app.perceive import View
 from cobot_lfd.app.provenance import Provenance
+from cobot_lfd.app.results import EpisodeResult
 from cobot_lfd.app.run_folder import RunFolder
+from cobot_lfd.camera_file import save_camera
 from cobot_lfd.errors import CobotError, DataError, DescriptionError, ModelError
 from cobot_lfd.outcome import Outcome
+from cobot_lfd.pose import Pose
 from scenes import load_scene
 from tests.app_examples import detection
 from tests.evaluation_examples import sweep_demonstrations
@@ -253,14 +257,47 @@ def test_a_plan_file_says_what_the_options_say(model_file: Path, tmp_path: Path)
         sweep=Sweep(detection_noise_mm=(0.0, 2.0), distractors=(0, 5)),
     )
     assert PlanOptions.read(file).plan() == options.plan()
+    save_camera(SCENE.camera.camera, tmp_path / "camera.toml")
+    file.write_text('camera = "camera.toml"\n' + file.read_text())
+    seen = options.model_copy(update={"camera": tmp_path / "camera.toml"})
+    assert PlanOptions.read(file).plan() == seen.plan() != options.plan()
     file.write_text('scene = ["pick_and_place"]\nepisode = 3\n')
     with pytest.raises(DescriptionError, match=r"plan.toml: episode: is no key that is known here"):
         PlanOptions.read(file)
 
 
+def test_pictures_are_read_by_the_calibrated_camera(model_file: Path, tmp_path: Path) -> None:
+    """A camera that stands 10 mm beside where it is believed to sees all 10 mm beside where it is."""
+    file, shift = tmp_path / "camera.toml", np.array([0.01, 0.0, 0.0])
+    true = SCENE.camera.camera
+    pose = Pose(true.world_from_camera.position + shift, true.world_from_camera.rotation)
+    save_camera(replace(true, world_from_camera=pose), file)
+    options = PlanOptions(models=(model_file,), scene=("pick_and_place",), episodes=1, camera=file)
+    seen_by = options.plan()
+    read = Plan.from_json(seen_by.to_json(), {c.sha256: c.content for c in seen_by.contenders})
+    assert read == seen_by
+    assert read.run == seen_by.run != options.model_copy(update={"camera": None}).plan().run
+    file.unlink()  # The plan is complete in itself.
+    performed = perform(read.trial(0)).result
+    assert {round(1e3 * item.position_error) for item in performed.objects} == {10}
+    assert EpisodeResult.from_json(performed.to_json()).perturbation == performed.perturbation
+
+
+def test_another_file_of_a_scenes_camera_is_another_scene(tmp_path: Path) -> None:
+    source = (Path(scenes.__file__).parent / "pick_and_place.toml").read_text(encoding="utf-8")
+    scene = tmp_path / "mine.toml"
+    scene.write_text(source.replace("[camera]", '[camera]\ncalibration = "camera.toml"'), encoding="utf-8")
+    camera, told = SCENE.camera.camera, set()
+    for matrix in (camera.matrix, camera.matrix * [[1.01], [1.01], [1.0]]):
+        save_camera(replace(camera, matrix=matrix), tmp_path / "camera.toml")
+        told |= set(fingerprints((str(scene),), ()).values())
+    assert len(told) == 2
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
+        ({"camera": Path("none.toml")}, "none.toml: cannot be read"),
         ({"scene": ("nowhere",)}, "no scene named 'nowhere'"),
         ({"models": (Path("none.npz"),)}, "none.npz"),
         ({"models": ()}, "there is nothing to evaluate"),

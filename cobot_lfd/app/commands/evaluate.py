@@ -39,6 +39,7 @@ def evaluate(
     time_limit: float = 300.0,
     videos: Literal["none", "failures"] = "none",
     covered: bool = False,
+    camera: Path | None = None,
     sweep: OmitArgPrefixes[Sweep] = Sweep(),  # noqa: B008 - a value that does not change
     json: bool = False,
 ) -> int:
@@ -64,6 +65,7 @@ def evaluate(
         time_limit: Time for one episode [s], after which its process is ended.
         videos: Of which episodes videos are made.
         covered: Cover the camera's lens; no episode can then succeed.
+        camera: File of a calibrated camera (cobot-lfd calibrate), by which pictures are read.
         sweep: What is made harder; several values of an option are all tried.
         json: Print the summary as JSON.
     """
@@ -74,11 +76,11 @@ def evaluate(
         folder.require_unchanged()
         return _carry_out(folder, where, json=json)
     require_positive("episodes", episodes)
-    if plan is not None and (models or scene or method):
-        raise CobotError("--plan says what is evaluated; leave out models, --scene and --method.")
+    if plan is not None and (models or scene or method or camera):
+        raise CobotError("--plan says what is evaluated; leave out models, --scene, --method and --camera.")
     options = PlanOptions.read(plan) if plan is not None else PlanOptions(
         models=models, scene=scene, robot=robot, method=method, demos=demos,
-        episodes=episodes, seed=seed, covered=covered, sweep=sweep,
+        episodes=episodes, seed=seed, covered=covered, camera=camera, sweep=sweep,
     )  # fmt: skip
     return _carry_out(_begin(options, out), where, json=json)
 

@@ -1,7 +1,7 @@
 """What a user asks to be evaluated, by options or in a TOML file, and the plan that follows from it."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
@@ -11,9 +11,11 @@ from cobot_lfd.app.evaluation.contender import Contender, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_to_bytes
 from cobot_lfd.app.evaluation.perturbation import Perturbation, Sweep
 from cobot_lfd.app.evaluation.plan import Plan
+from cobot_lfd.camera_file import CameraValues, read_camera_values
 from cobot_lfd.description_file import DescriptionModel, read_description
 from cobot_lfd.errors import CobotError, DataError
 from cobot_lfd.learning.model import TaskParameterisedGMM
+from scenes import load_scene
 
 
 class PlanOptions(DescriptionModel):
@@ -28,6 +30,7 @@ class PlanOptions(DescriptionModel):
         episodes: How many seeds.
         seed: The first seed.
         covered: Whether something covers the camera's lens.
+        camera: File of the calibrated camera by which pictures are read; the scenes' own by default.
         sweep: What is made harder.
     """
 
@@ -39,6 +42,7 @@ class PlanOptions(DescriptionModel):
     episodes: Annotated[int, Field(ge=1)] = 100
     seed: Annotated[int, Field(ge=0)] = 0
     covered: bool = False
+    camera: Path | None = None
     sweep: Sweep = Sweep()
 
     @classmethod
@@ -49,9 +53,13 @@ class PlanOptions(DescriptionModel):
             DescriptionError: If the file cannot be read or holds what is not allowed.
         """
         options = read_description(file, cls)
-        models = tuple(file.parent / model for model in options.models)
-        demos = None if options.demos is None else file.parent / options.demos
-        return options.model_copy(update={"models": models, "demos": demos})
+        paths: dict[str, Any] = {"models": tuple(file.parent / model for model in options.models)}
+        paths |= {
+            name: file.parent / path
+            for name, path in (("demos", options.demos), ("camera", options.camera))
+            if path is not None
+        }
+        return options.model_copy(update=paths)
 
     def plan(self) -> Plan:
         """The plan, after everything in it has been tried: models are read and methods fitted once.
@@ -74,11 +82,20 @@ class PlanOptions(DescriptionModel):
 
     def _perturbations(self) -> tuple[Perturbation, ...]:
         try:
-            return self.sweep.perturbations(covered=self.covered)
+            return self.sweep.perturbations(covered=self.covered, camera=self._camera())
         except ValidationError as error:
             fault = error.errors()[0]
             option = str(fault["loc"][0]).replace("_", "-")
             raise CobotError(f"--{option} is {fault['input']!r}: {fault['msg'].lower()}.") from error
+
+    def _camera(self) -> CameraValues | None:
+        """What the camera's file holds, if it is one that all scenes can be seen by."""
+        if self.camera is None:
+            return None
+        values = read_camera_values(self.camera)
+        for scene in self.scene:
+            load_scene(scene, calibration=self.camera)
+        return values
 
     def _methods(self) -> tuple[Contender, ...]:
         if not self.method:

@@ -93,7 +93,7 @@ def labelled(trial: Trial, result: EpisodeResult) -> EpisodeResult:
         run=trial.run,
         trial=trial.number,
         contender=trial.contender.label,
-        perturbation=trial.perturbation.changes(),
+        perturbation=trial.perturbation.told(),
     )
 
 

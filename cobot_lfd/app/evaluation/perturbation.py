@@ -1,5 +1,6 @@
 """What differs from the scene's own file and the arm's usual manner: noise, light, ranges, compliance, ..."""
 
+import hashlib
 from dataclasses import replace
 from itertools import product
 from typing import Annotated, Any
@@ -8,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from cobot_lfd.app.perceive import View
+from cobot_lfd.camera_file import CameraValues
 from cobot_lfd.description_file import DescriptionModel
 from cobot_lfd.detection import Detection
 from cobot_lfd.frame import Frame
@@ -37,6 +39,7 @@ class Perturbation(DescriptionModel):
         compliant: Whether the arm gives way during the carry where the demonstrations strayed.
         timing: How the motion along the path gets its times.
         covered: Whether something covers the camera's lens.
+        camera: The calibrated camera by which pictures are read; None: the scene's.
     """
 
     detection_noise_mm: _NotNegative = 0.0
@@ -52,15 +55,22 @@ class Perturbation(DescriptionModel):
     compliant: bool = False
     timing: TimingMethod = "simple"
     covered: bool = False
+    camera: CameraValues | None = None
 
     def changes(self) -> dict[str, Any]:
-        """What differs from no perturbation, by name."""
-        return {name: value for name, value in self.model_dump().items() if value != getattr(_NOTHING, name)}
+        """What differs from no perturbation, by name; ``model_validate`` reads it back."""
+        values = self.model_dump(mode="json")
+        return {name: value for name, value in values.items() if value != getattr(_NOTHING, name)}
+
+    def told(self) -> dict[str, float | str]:
+        """The same for people, who know a camera by its checksum."""
+        known = {} if self.camera is None else {"camera": _checksum(self.camera)}
+        return self.changes() | known
 
     @property
     def label(self) -> str:
         """What differs, in words; "none" where nothing does."""
-        return ", ".join(f"{name} {_word(value)}" for name, value in self.changes().items()) or "none"
+        return ", ".join(f"{name} {_word(value)}" for name, value in self.told().items()) or "none"
 
     def of_scene(self, scene: SceneDescription) -> SceneDescription:
         """The scene as it is under this perturbation."""
@@ -68,6 +78,8 @@ class Perturbation(DescriptionModel):
         _dim_and_turn(content["light"], self.light, np.deg2rad(self.light_turn_deg))
         content["camera"]["sensor"]["noise"] += self.camera_noise
         content["camera"]["lens"]["blur"] += self.camera_blur
+        if self.camera is not None:
+            content["camera"]["calibration"] = self.camera
         content["distractors"] += self.distractors
         content["table"]["friction"] *= self.friction
         for item in content["objects"].values():
@@ -134,20 +146,30 @@ class Sweep(DescriptionModel):
     compliant: tuple[bool, ...] = (False,)
     timing: tuple[TimingMethod, ...] = ("simple",)
 
-    def perturbations(self, *, covered: bool = False) -> tuple[Perturbation, ...]:
+    def perturbations(
+        self, *, covered: bool = False, camera: CameraValues | None = None
+    ) -> tuple[Perturbation, ...]:
         """Every combination, the first option varying slowest.
+
+        Args:
+            covered: Whether something covers the camera's lens in all of them.
+            camera: The calibrated camera by which pictures are read in all of them; None: the scene's.
 
         Raises:
             ValidationError: If a value is not allowed; it is a ``ValueError``.
         """
-        axes = self.model_dump()
+        axes, always = self.model_dump(), {"covered": covered, "camera": camera}
         return tuple(
-            Perturbation.model_validate(dict(zip(axes, values, strict=True)) | {"covered": covered})
+            Perturbation.model_validate(dict(zip(axes, values, strict=True)) | always)
             for values in product(*axes.values())
         )
 
 
 _NOTHING = Perturbation()
+
+
+def _checksum(camera: CameraValues) -> str:
+    return hashlib.sha256(camera.model_dump_json().encode()).hexdigest()[:8]
 
 
 def _word(value: str | float) -> str:

@@ -5,15 +5,17 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from cobot_lfd.app.evaluation.contender import Contender
 from cobot_lfd.app.evaluation.perturbation import Perturbation
+from cobot_lfd.camera_file import read_camera_values
 from cobot_lfd.errors import DataError
 from robots import load_robot
-from scenes import load_scene
+from scenes import SceneDescription, load_scene
 
 FORMAT, VERSION = "cobot_lfd evaluation plan", 1
 
@@ -176,6 +178,13 @@ def fingerprints(scenes: tuple[str, ...], robots: tuple[str, ...]) -> dict[str, 
     Raises:
         DescriptionError: If there is no such scene or robot.
     """
-    described = {f"scene {name}": load_scene(name).model_dump_json() for name in scenes}
+    described = {f"scene {name}": _in_full(load_scene(name)) for name in scenes}
     described |= {f"robot {name}": load_robot(name).model_dump_json() for name in robots}
     return {name: hashlib.sha256(text.encode()).hexdigest() for name, text in described.items()}
+
+
+def _in_full(scene: SceneDescription) -> str:
+    """A scene's description, with what the file of its camera holds."""
+    calibration = scene.camera.calibration
+    held = read_camera_values(calibration).model_dump_json() if isinstance(calibration, Path) else ""
+    return scene.model_dump_json() + held
