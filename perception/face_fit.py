@@ -1,34 +1,34 @@
 """The pose of a face whose look is known, fitted to the brightness of all its pixels in a picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cobot_lfd.appearance import Appearance
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.frame import Frame
+from perception.face import BLURS, SOFTER, Face, Level, Look
 from perception.rigid import on_plane
 
-_BLURS = (2.0, 1.0, 0.5)  # Of face and picture, step after step [px]: far reach at first, then precision.
-_STRIDES = (2, 2, 1)  # Of the pixels that are compared at each blur.
-_N_STEPS = 6
-_SMALL_STEP = 5e-6  # [m] and [rad]
+_N_STEPS = 6  # At each blur, at the most.
+_SMALL_STEP = 0.01  # From which on no further step is taken [px].
 _TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
-_BLOCK = 4  # Side of the squares of pixels within which errors hang together [px].
-_N_EVEN = 5  # Unknowns where the light is even; at first it always is, until the pose is nearly right.
+_POSE = 3  # Unknowns: x, y, angle; then come the light's.
+_N_EVEN = (5, 6, 6)  # Unknowns at each blur where the light is even: blur is told from where it is small on.
+_N_ALL = 8
 _FEWEST_PIXELS = 60
 _LEAST_INSIDE = 0.3  # Share of a face that must lie in the picture.
-_RIDGE = 1e-3 * np.eye(7)  # Keeps what no pixel tells anything about where it is.
+_RIDGE = 1e-3 * np.eye(_N_ALL)  # Keeps what no pixel tells anything about where it is.
 _DARK = 20.0  # Brightness below which a ratio tells little [0..255].
 _LEAST_CONTRAST = 0.2  # Of the picture, compared with the face; below, it shows something else.
-_LEAST_ERROR = 0.03  # How far off the picture is from which the face was learnt [px]; found by measuring.
-_RADIUS = 0.3  # Of a face's pixels about its middle, as a share of its extent.
+# Where the light is taken to be uneven, which explains much, a face must be like the expected one in this
+# share of its pixels, with this correlation.
+_SHOWN_IN_SHADE, _CORRELATION_IN_SHADE = 0.8, 0.9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class FaceFit:
         frame: The pose.
         covariance: Of the errors in x [m], y [m] and angle [rad], shape (3, 3).
         shown: Share of the face's pixels that look as they should.
-        correlation: Of the brightness of those, expected and seen.
+        correlation: Of the brightness of those, expected and seen, but for what the noise takes from it.
     """
 
     frame: Frame
@@ -49,147 +49,154 @@ class FaceFit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Level:
-    """A face's pixels well inside its outline, at one blur.
+class BlurredPicture:
+    """How bright a picture is, at each of the blurs that faces are compared at.
 
     Attributes:
-        local: Where they are in the object's frame [m], shape (n, 2).
-        brightness: How bright they are [0..255], shape (n,).
-        gradients: Of the brightness, along the frame's axes [1/m], shape (n, 2).
-        blocks: Number of the square that each lies in, shape (n,).
-        shades: How the brightness changes with each of the light's numbers, shape (n, 4).
+        levels: The picture at each blur, shape (height, width) each.
+        noise: Standard deviation of the noise in the least blurred one [0..255].
+        camera: The camera that took it.
     """
 
-    local: Array
-    brightness: Array
-    gradients: Array
-    blocks: NDArray[np.int_]
-    shades: Array
+    levels: tuple[NDArray[Any], ...]
+    noise: float
+    camera: Camera
+
+    @classmethod
+    def of(cls, image: NDArray[np.uint8], noise: float, camera: Camera) -> "BlurredPicture":
+        """From how bright a picture is, with the standard deviation of its pixels' noise."""
+        levels = tuple(np.asarray(cv2.GaussianBlur(image.astype(np.float32), (0, 0), blur)) for blur in BLURS)
+        kernel = np.ravel(cv2.getGaussianKernel(9, BLURS[-1]))
+        left = float(kernel @ kernel) * 2 / 3  # Of the variance along an axis; interpolation leaves 2/3.
+        return cls(levels, noise * left, camera)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Face:
-    """A face, prepared for being fitted.
+class _State:
+    """Where a face is taken to be, in what light, through what lens.
 
     Attributes:
-        levels: Its pixels at each blur; the more it is blurred, the fewer are needed.
-        z: Height of the face [m].
-        least_error: How far off in x [m], y [m] and angle [rad] it may be because of how it was learnt, (3,).
+        frame: The pose.
+        light: A factor of the face's brightness, what is added to it [0..255], the square of a further blur
+            times the factor [px²], and how much the factor grows towards the ends of the frame's axes, (5,).
+        lens: Number of the look of the face, of those through softer and softer lenses.
     """
 
-    levels: tuple[_Level, ...]
-    z: float
-    least_error: Array
+    frame: Frame
+    light: Array
+    lens: int = 0
 
-    @classmethod
-    def of(cls, appearance: Appearance) -> "Face":
-        """From what the face looks like."""
-        grey = cv2.cvtColor(appearance.image, cv2.COLOR_RGB2GRAY).astype(np.float32)
-        mask = np.zeros(grey.shape, np.uint8)
-        cv2.fillPoly(mask, [np.rint(appearance.to_pixels(appearance.outline)).astype(np.int32)], 1)
-        mask = np.asarray(cv2.erode(mask, np.ones((3, 3), np.uint8), borderValue=0), np.uint8)
-        levels = tuple(
-            _level(appearance, grey, mask, blur, stride)
-            for blur, stride in zip(_BLURS, _STRIDES, strict=True)
+    def expected(self, level: Level) -> Array:
+        """How bright the face's pixels must be, shape (n,)."""
+        return _shades(level, level.looks[self.lens]) @ self.light
+
+    def jacobian(self, level: Level, free: int) -> Array:
+        """How the difference of seen and expected brightness changes with the unknowns, shape (n, free)."""
+        look = level.looks[self.lens]
+        in_world = self.light[0] * look.gradients @ self.frame.rotation.T
+        x, y = (level.local @ self.frame.rotation.T).T
+        by_angle = in_world[:, 1] * x - in_world[:, 0] * y
+        return np.column_stack([in_world, by_angle, -_shades(level, look)])[:, :free]
+
+    def moved(self, step: Array) -> "_State":
+        """A step further."""
+        light = self.light.copy()
+        light[: len(step) - _POSE] += step[_POSE:]
+        return replace(
+            self, frame=Frame(self.frame.position + step[:2], self.frame.angle + step[2]), light=light
         )
-        radius = _RADIUS * float(np.linalg.norm(np.ptp(appearance.outline, axis=0)))
-        least_error = _LEAST_ERROR * appearance.metres_per_pixel / np.array([1.0, 1.0, radius])
-        return cls(levels, appearance.z, least_error)
+
+    def through_the_right_lens(self) -> "_State":
+        """The same with a look of the face that is as soft as the picture."""
+        if self.light[0] < _LEAST_CONTRAST:
+            return self
+        variance = SOFTER[self.lens] ** 2 + self.light[2] / self.light[0]
+        lens = int(np.argmin(np.abs(np.square(SOFTER) - variance)))
+        light = self.light.copy()
+        light[2] = self.light[0] * (variance - SOFTER[lens] ** 2) if lens == self.lens else 0.0
+        return replace(self, light=light, lens=lens)
 
 
-def _level(
-    appearance: Appearance, grey: NDArray[Any], mask: NDArray[np.uint8], blur: float, stride: int
-) -> _Level:
-    smooth = np.asarray(cv2.GaussianBlur(grey, (0, 0), blur), np.float64)
-    rows, columns = (stride * indices for indices in np.nonzero(mask[::stride, ::stride]))
-    down, right = (np.gradient(smooth, axis=axis)[rows, columns] for axis in (0, 1))
-    local, brightness = appearance.to_local(np.column_stack([columns, rows])), smooth[rows, columns]
-    u, v = (local / np.abs(local).max()).T
-    return _Level(
-        local=local,
-        brightness=brightness,
-        gradients=np.column_stack([right, -down]) / appearance.metres_per_pixel,
-        blocks=(rows // _BLOCK) * (grey.shape[1] // _BLOCK + 1) + columns // _BLOCK,
-        shades=np.column_stack([brightness, np.ones_like(brightness), brightness * u, brightness * v]),
-    )
+def _shades(level: Level, look: Look) -> Array:
+    """How the brightness changes with each of the light's numbers, shape (n, 5)."""
+    by_axes = look.brightness[:, None] * level.across
+    return np.column_stack([look.brightness, np.ones(len(by_axes)), look.diffusion, by_axes])
 
 
-def blurred(grey: NDArray[np.uint8]) -> list[NDArray[Any]]:
-    """A grey picture at each of the blurs that faces are compared at."""
-    return [np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), blur)) for blur in _BLURS]
-
-
-def fit_face(
-    pictures: list[NDArray[Any]], camera: Camera, face: Face, start: Frame, *, even: bool = True
-) -> FaceFit | None:
+def fit_face(picture: BlurredPicture, face: Face, start: Frame) -> FaceFit | None:
     """Move a face until its pixels look as they are expected to look.
 
     Gauss-Newton on the differences of brightness, with the face's own gradients as in inverse compositional
-    alignment (Baker and Matthews 2004), for the pose together with the light;
-    Tukey's weights leave out what covers the face.
+    alignment (Baker and Matthews 2004), for the pose together with the light and the picture's blur; Tukey's
+    weights leave out what covers the face. At first the light is taken to be even; where uneven light
+    explains all of the face better, and not what covers it, that counts.
 
     Args:
-        pictures: The grey picture at each blur.
-        camera: The camera that took it.
+        picture: The picture.
         face: The face.
         start: Where it is, to a few pixels.
-        even: Whether the light is taken to be even across the face; if not, a cover may pass for shade.
 
     Returns:
         The fit; None if the face leaves the picture, or too little of it is seen.
     """
-    seen, inside = _seen(pictures[0], camera, face.levels[0], face.z, start)
+    state: _State | None = _first(picture, face, start)
+    for i, free in enumerate(_N_EVEN):
+        state = state and _settled(picture, face, state, i, free)
+    even = state and _judged(picture, face, state, _N_EVEN[-1])
+    if state is None or even is None:
+        return None
+    state = _settled(picture, face, state, len(BLURS) - 1, _N_ALL)
+    shaded = state and _judged(picture, face, state, _N_ALL)
+    return shaded if shaded is not None and _explains_more(shaded, even) else even
+
+
+def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
+    """Whether uneven light explains a face, and not what covers it, which would be like it in shape only."""
+    least = max(even.correlation, _CORRELATION_IN_SHADE)
+    return shaded.shown > _SHOWN_IN_SHADE and shaded.correlation > least
+
+
+def _first(picture: BlurredPicture, face: Face, start: Frame) -> _State | None:
+    """The start in a light that seems right, an even factor; None if the face leaves the picture."""
+    level = face.levels[0]
+    seen, inside = _seen(picture, 0, level, face.z, start)
     if inside.mean() < _LEAST_INSIDE:
         return None
-    frame, light = start, _first_light(face.levels[0].brightness[inside], seen[inside])
-    for picture, level in zip(pictures, face.levels, strict=True):
-        for _ in range(_N_STEPS):
-            seen, inside = _seen(picture, camera, level, face.z, frame)
-            if inside.mean() < _LEAST_INSIDE:
-                return None
-            errors = seen - level.shades @ light
-            jacobian = _jacobian(level, frame, light)
-            weighted = jacobian * _weights(errors, inside)[:, None]
-            free = _N_EVEN if even or level is face.levels[0] else len(weighted.T)
-            information = weighted[:, :free].T @ jacobian[:, :free] + _RIDGE[:free, :free]
-            step = np.zeros(len(weighted.T))
-            step[:free] = -np.linalg.solve(information, weighted[:, :free].T @ errors)
-            frame = Frame(frame.position + step[:2], frame.angle + step[2])
-            light = light + step[3:]
-            if np.abs(step[:3]).max() < _SMALL_STEP:
-                break
-    return _judged(pictures[-1], camera, face, frame, light)
+    ratios = seen[inside] / np.maximum(level.looks[0].brightness[inside], _DARK)
+    return _State(start, np.array([float(np.median(ratios)), 0.0, 0.0, 0.0, 0.0]))
+
+
+def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: int) -> _State | None:
+    """The state that explains the picture at its i-th blur best; None if the face leaves the picture."""
+    level = face.levels[i]
+    small = _SMALL_STEP * BLURS[i] / BLURS[-1] * face.metres_per_pixel
+    for _ in range(_N_STEPS):
+        seen, inside = _seen(picture, i, level, face.z, state.frame)
+        if inside.mean() < _LEAST_INSIDE:
+            return None
+        errors = seen - state.expected(level)
+        jacobian = state.jacobian(level, free)
+        weighted = jacobian * _weights(errors, inside)[:, None]
+        information = weighted.T @ jacobian + _RIDGE[:free, :free]
+        step = -np.linalg.solve(information, weighted.T @ errors)
+        moved = state.moved(step)
+        state, before = moved.through_the_right_lens(), state
+        if np.abs(step[:3] * [1.0, 1.0, face.radius]).max() < small and state.lens == before.lens:
+            break
+    return state
 
 
 def _seen(
-    picture: NDArray[Any], camera: Camera, level: _Level, z: float, frame: Frame
+    picture: BlurredPicture, i: int, level: Level, z: float, frame: Frame
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Brightness of the picture where a face's pixels land, and whether they land in it, shape (n,) each."""
-    places = camera.project(on_plane(frame.apply(level.local), z)).astype(np.float32)
-    x, y = places.T
-    sampled = cv2.remap(picture, x[:, None], y[:, None], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    camera = picture.camera
+    x, y = camera.project(on_plane(frame.apply(level.local), z)).astype(np.float32).T
+    sampled = cv2.remap(
+        picture.levels[i], x[:, None], y[:, None], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
     inside = (x >= 0) & (y >= 0) & (x <= camera.width - 1) & (y <= camera.height - 1)
     return np.asarray(sampled, np.float64).ravel(), inside
-
-
-def _first_light(expected: Array, seen: Array) -> Array:
-    """The light as it seems at first, an even factor, shape (4,).
-
-    Its numbers are a factor of the face's brightness, what is added to it [0..255], and how much the factor
-    grows towards the ends of the frame's axes.
-    """
-    return np.array([float(np.median(seen / np.maximum(expected, _DARK))), 0.0, 0.0, 0.0])
-
-
-def _jacobian(level: _Level, frame: Frame, light: Array) -> Array:
-    """How much brighter each pixel is seen by a step in x, y and angle, and expected by one of the light's.
-
-    Its sign is that of the difference between seen and expected, shape (n, 7).
-    """
-    in_world = light[0] * level.gradients @ frame.rotation.T
-    x, y = (level.local @ frame.rotation.T).T
-    by_angle = in_world[:, 1] * x - in_world[:, 0] * y
-    return np.column_stack([in_world, by_angle, -level.shades])
 
 
 def _weights(errors: Array, inside: NDArray[np.bool_]) -> Array:
@@ -198,36 +205,45 @@ def _weights(errors: Array, inside: NDArray[np.bool_]) -> Array:
     return np.where(inside, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
 
 
-def _judged(picture: NDArray[Any], camera: Camera, face: Face, frame: Frame, light: Array) -> FaceFit | None:
+def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> FaceFit | None:
     """How well a pose is supported by the least blurred picture.
 
     The covariance is the sandwich ``H^-1 (sum over blocks of g g') H^-1`` (Huber 1967): it takes the errors
     as they are, also where those of neighbouring pixels hang together.
     """
     level = face.levels[-1]
-    seen, inside = _seen(picture, camera, level, face.z, frame)
-    errors = seen - level.shades @ light
+    seen, inside = _seen(picture, len(BLURS) - 1, level, face.z, state.frame)
+    expected = state.expected(level)
+    errors = seen - expected
     weights = _weights(errors, inside)
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
         return None
-    jacobian = _jacobian(level, frame, light)
+    jacobian = state.jacobian(level, free)
     weighted = jacobian * weights[:, None]
-    pulls = np.zeros((level.blocks.max() + 1, jacobian.shape[1]))
+    pulls = np.zeros((level.blocks.max() + 1, free))
     np.add.at(pulls, level.blocks, weighted * errors[:, None])
-    inverse = np.linalg.inv(weighted.T @ jacobian + _RIDGE)
+    inverse = np.linalg.inv(weighted.T @ jacobian + _RIDGE[:free, :free])
     covariance = (inverse @ (pulls.T @ pulls) @ inverse)[:3, :3] + np.diag(face.least_error**2)
+    alike = state.light[0] > _LEAST_CONTRAST
+    light = np.column_stack([np.ones(len(seen)), level.across])[:, : 1 if free < _N_ALL else 3]
     return FaceFit(
-        frame,
+        state.frame,
         covariance,
         shown=float(shown.mean()),
-        correlation=_correlation((level.shades @ light)[shown], seen[shown])
-        if light[0] > _LEAST_CONTRAST
-        else 0.0,
+        correlation=_correlation(expected[shown], seen[shown], light[shown], picture.noise) if alike else 0.0,
     )
 
 
-def _correlation(a: Array, b: Array) -> float:
-    """Of two series of values; 0 where one of them is even."""
-    a, b = a - a.mean(), b - b.mean()
-    return float(a @ b / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-9))
+def _correlation(expected: Array, seen: Array, light: Array, noise: float) -> float:
+    """Of two series of values, the second of which is noisy, as it would be without (Spearman 1904).
+
+    What the light does to both, a plane over the face at the most, is no likeness and is taken off before.
+    It is 0 where one of them is even, or shows no more than noise.
+    """
+    both = np.column_stack([expected, seen])
+    a, b = (both - light @ np.linalg.lstsq(light, both, rcond=None)[0]).T
+    variance = float(b @ b) - len(b) * noise**2
+    if variance <= 0.0:
+        return 0.0
+    return min(1.0, float(a @ b) / max(float(np.linalg.norm(a)) * variance**0.5, 1e-9))

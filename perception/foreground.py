@@ -1,8 +1,12 @@
 """The parts of a picture in which there is something: everything but the even table."""
 
+from collections.abc import Iterable
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from cobot_lfd.arrays import Array
 
 _SCALE = 4  # Side of the squares of pixels that are averaged first [px].
 _LEAST_EDGE = 8.0  # Difference between neighbouring squares that may be more than the table's noise [0..255].
@@ -29,4 +33,15 @@ def foreground_parts(grey: NDArray[np.uint8]) -> list[Part]:
     return [
         (slice(top * _SCALE, min(bottom * _SCALE, height)), slice(left * _SCALE, min(right * _SCALE, width)))
         for top, bottom, left, right in boxes
+    ]
+
+
+def without(parts: Iterable[Part], contour: Array) -> list[Part]:
+    """The parts but those in which there is room for little else than what lies in a contour [px], (n, 2)."""
+    left, top = contour.min(axis=0) - 2 * _SCALE * _MARGIN  # The thing's own margin, its walls and shadow.
+    right, bottom = contour.max(axis=0) + 2 * _SCALE * _MARGIN
+    return [
+        (rows, columns)
+        for rows, columns in parts
+        if rows.start < top or rows.stop > bottom or columns.start < left or columns.stop > right
     ]

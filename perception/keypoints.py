@@ -81,7 +81,15 @@ def nearest(
     """
     if not len(descriptors) or len(among) < 2:
         return np.zeros(len(descriptors), dtype=int), np.ones(len(descriptors))
-    matcher = cv2.BFMatcher(cv2.NORM_L2 if kind == "sift" else cv2.NORM_HAMMING)
-    pairs = matcher.knnMatch(descriptors, among, k=2)
-    ratios = np.array([first.distance / max(second.distance, 1e-9) for first, second in pairs])
-    return np.array([first.trainIdx for first, _ in pairs]), ratios
+    a, b = (_as_vectors(each, kind) for each in (descriptors, among))
+    squares = (a * a).sum(axis=1)[:, None] - 2 * a @ b.T + (b * b).sum(axis=1)
+    first = np.argmin(squares, axis=1)
+    nearest_two = np.maximum(np.partition(squares, 1, axis=1)[:, :2], 0.0)
+    distances = nearest_two if kind == "orb" else np.sqrt(nearest_two)
+    return first, np.asarray(distances[:, 0] / np.maximum(distances[:, 1], 1e-9), np.float64)
+
+
+def _as_vectors(descriptors: NDArray[Any], kind: FeatureKind) -> NDArray[np.float32]:
+    """Descriptors as vectors; the number of bits in which two differ is their squared distance."""
+    numbers = descriptors if kind == "sift" else np.unpackbits(descriptors, axis=1)
+    return np.asarray(numbers, np.float32)

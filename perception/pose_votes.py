@@ -29,12 +29,10 @@ def vote(
         tolerance: How far off a point may be [m].
         most: How many poses to return at most.
     """
-    (a, b), (c, d) = local_directions.T, world_directions.T
-    cos, sin = a * c + b * d, a * d - b * c
-    x, y = local.T
-    turned = np.stack([np.outer(cos, x) - np.outer(sin, y), np.outer(sin, x) + np.outer(cos, y)], axis=-1)
-    shifts = world - turned[np.arange(len(x)), np.arange(len(x))]
-    agree = np.linalg.norm(turned + shifts[:, None] - world, axis=-1) < tolerance
+    x, w = _complex(local), _complex(world)
+    turns = _complex(world_directions) * np.conj(_complex(local_directions))
+    shifts = w - turns * x
+    agree = np.abs(np.outer(turns, x) + (shifts[:, None] - w)) < tolerance
     free, poses = np.ones(len(x), dtype=bool), []
     for _ in range(most):
         counts = (agree & free).sum(axis=1) * free
@@ -45,10 +43,15 @@ def vote(
         poses.append(
             _fitted(local[chosen], world[chosen])
             if chosen.sum() > 1
-            else Frame(shifts[best], float(np.arctan2(sin[best], cos[best])))
+            else Frame([shifts[best].real, shifts[best].imag], float(np.angle(turns[best])))
         )
         free &= ~chosen
     return poses
+
+
+def _complex(vectors: Array) -> NDArray[np.complex64]:
+    """Vectors in the plane as complex numbers, which turns multiply, shape (n,)."""
+    return (vectors[:, 0] + 1j * vectors[:, 1]).astype(np.complex64)
 
 
 def _fitted(local: Array, world: Array) -> Frame:
