@@ -16,8 +16,9 @@ SOFTER = (0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 """Blur that the picture may have and the picture from which the face was learnt has not [px]."""
 
 _STRIDES = (2, 2, 1)  # Of the pixels that are compared at each blur.
-_BLOCK = 4  # Side of the squares of pixels within which errors hang together [px].
-_LEAST_ERROR = 0.03  # How far off the picture is from which the face was learnt [px]; found by measuring.
+_BLOCK = 6  # Side of the squares of pixels within which errors hang together [px].
+_LEAST_ERROR = 0.004  # How far off the picture is from which the face was learnt [px]; found by measuring.
+_DISTURBED = 2.0  # Distance from the outline within which surroundings disturb a face, in blurs.
 _RADIUS = 0.3  # Of a face's pixels about its middle, as a share of its extent.
 
 
@@ -30,11 +31,14 @@ class Look:
         gradients: Of the brightness, along the frame's axes [1/m], shape (n, 2).
         diffusion: How the brightness changes with the square of a further blur [1/px²], shape (n,): half
             of its second derivatives' sum, since blur is diffusion.
+        undisturbed: Whether they are so far inside the outline that what surrounds the face, which may be
+            in light or shadow, does not shine into them, shape (n,).
     """
 
     brightness: Array
     gradients: Array
     diffusion: Array
+    undisturbed: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,19 +98,25 @@ def _level(
     appearance: Appearance, image: NDArray[Any], mask: NDArray[np.uint8], blur: float, stride: int
 ) -> Level:
     rows, columns = (stride * indices for indices in np.nonzero(mask[::stride, ::stride]))
+    depth = np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE))
     local = appearance.to_local(np.column_stack([columns, rows]))
     return Level(
         local=local,
         across=local / np.abs(local).max(),
         blocks=(rows // _BLOCK) * (image.shape[1] // _BLOCK + 1) + columns // _BLOCK,
         looks=tuple(
-            _look(appearance, image, rows, columns, float(np.hypot(blur, softer))) for softer in SOFTER
+            _look(appearance, image, depth, rows, columns, float(np.hypot(blur, softer))) for softer in SOFTER
         ),
     )
 
 
 def _look(
-    appearance: Appearance, image: NDArray[Any], rows: NDArray[Any], columns: NDArray[Any], blur: float
+    appearance: Appearance,
+    image: NDArray[Any],
+    depth: NDArray[Any],
+    rows: NDArray[Any],
+    columns: NDArray[Any],
+    blur: float,
 ) -> Look:
     smooth = np.asarray(cv2.GaussianBlur(image, (0, 0), blur), np.float64)
     down, right = (np.gradient(smooth, axis=axis)[rows, columns] for axis in (0, 1))
@@ -114,4 +124,5 @@ def _look(
         brightness=smooth[rows, columns],
         gradients=np.column_stack([right, -down]) / appearance.metres_per_pixel,
         diffusion=0.5 * np.asarray(cv2.Laplacian(smooth, cv2.CV_64F))[rows, columns],
+        undisturbed=depth[rows, columns] > _DISTURBED * blur,
     )

@@ -176,6 +176,8 @@ def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: i
             return None
         errors = seen - state.expected(level)
         jacobian = state.jacobian(level, free)
+        if i > 0:
+            inside &= level.looks[state.lens].undisturbed
         weighted = jacobian * _weights(errors, inside)[:, None]
         information = weighted.T @ jacobian + _RIDGE[:free, :free]
         step = -np.linalg.solve(information, weighted.T @ errors)
@@ -215,6 +217,7 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     seen, inside = _seen(picture, len(BLURS) - 1, level, face.z, state.frame)
     expected = state.expected(level)
     errors = seen - expected
+    inside &= level.looks[state.lens].undisturbed
     weights = _weights(errors, inside)
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
@@ -224,13 +227,15 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     pulls = np.zeros((level.blocks.max() + 1, free))
     np.add.at(pulls, level.blocks, weighted * errors[:, None])
     inverse = np.linalg.inv(weighted.T @ jacobian + _RIDGE[:free, :free])
-    covariance = (inverse @ (pulls.T @ pulls) @ inverse)[:3, :3] + np.diag(face.least_error**2)
+    n_blocks = len(np.unique(level.blocks[shown]))
+    spread = pulls.T @ pulls * n_blocks / max(n_blocks - free, 1)
+    covariance = (inverse @ spread @ inverse)[:3, :3] + np.diag(face.least_error**2)
     alike = state.light[0] > _LEAST_CONTRAST
     light = np.column_stack([np.ones(len(seen)), level.across])[:, : 1 if free < _N_ALL else 3]
     return FaceFit(
         state.frame,
         covariance,
-        shown=float(shown.mean()),
+        shown=float(shown.sum() / level.looks[state.lens].undisturbed.sum()),
         correlation=_correlation(expected[shown], seen[shown], light[shown], picture.noise) if alike else 0.0,
     )
 
