@@ -226,9 +226,11 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     weighted = jacobian * weights[:, None]
     pulls = np.zeros((level.blocks.max() + 1, free))
     np.add.at(pulls, level.blocks, weighted * errors[:, None])
-    inverse = np.linalg.inv(weighted.T @ jacobian + _RIDGE[:free, :free])
+    information = weighted.T @ jacobian + _RIDGE[:free, :free]
+    inverse = np.linalg.inv(information)
     n_blocks = len(np.unique(level.blocks[shown]))
     spread = pulls.T @ pulls * n_blocks / max(n_blocks - free, 1)
+    spread = 0.5 * (spread + float(np.trace(inverse @ spread)) / free * information)
     covariance = (inverse @ spread @ inverse)[:3, :3] + np.diag(face.least_error**2)
     alike = state.light[0] > _LEAST_CONTRAST
     light = np.column_stack([np.ones(len(seen)), level.across])[:, : 1 if free < _N_ALL else 3]
