@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from perception.picture import Picture
 
-_EVERY = 4  # Rows from one to the next in which noise is measured.
+_EVERY = 8  # Rows from one to the next in which noise is measured.
 _LEAST_NOISE = 0.4  # What rounding leaves at the least [0..255].
 
 

@@ -29,15 +29,16 @@ class Look:
     Attributes:
         brightness: How bright they are [0..255], shape (n,).
         gradients: Of the brightness, along the frame's axes [1/m], shape (n, 2).
-        diffusion: How the brightness changes with the square of a further blur [1/px²], shape (n,): half
-            of its second derivatives' sum, since blur is diffusion.
+        shades: How the brightness that is seen changes with the light's numbers, shape (n, 5): a factor, what
+            is added, the square of a further blur (half of the second derivatives' sum, since blur is
+            diffusion), and how much the factor grows along the frame's axes.
         undisturbed: Whether they are so far inside the outline that what surrounds the face, which may be
             in light or shadow, does not shine into them, shape (n,).
     """
 
     brightness: Array
     gradients: Array
-    diffusion: Array
+    shades: Array
     undisturbed: NDArray[np.bool_]
 
 
@@ -118,11 +119,15 @@ def _look(
     columns: NDArray[Any],
     blur: float,
 ) -> Look:
+    across = appearance.to_local(np.column_stack([columns, rows]))
+    across /= np.abs(across).max()
     smooth = np.asarray(cv2.GaussianBlur(image, (0, 0), blur), np.float64)
     down, right = (np.gradient(smooth, axis=axis)[rows, columns] for axis in (0, 1))
+    bright = smooth[rows, columns]
+    diffusion = 0.5 * np.asarray(cv2.Laplacian(smooth, cv2.CV_64F))[rows, columns]
     return Look(
-        brightness=smooth[rows, columns],
+        brightness=bright,
         gradients=np.column_stack([right, -down]) / appearance.metres_per_pixel,
-        diffusion=0.5 * np.asarray(cv2.Laplacian(smooth, cv2.CV_64F))[rows, columns],
+        shades=np.column_stack([bright, np.ones(len(bright)), diffusion, bright[:, None] * across]),
         undisturbed=depth[rows, columns] > _DISTURBED * blur,
     )

@@ -12,7 +12,9 @@ from perception.face_fit import FaceFit
 from perception.rigid import on_plane
 
 _LEAST_SHOWN = 0.35  # Share of a face's pixels that must look as they should.
-_LEAST_CORRELATION = 0.75  # Of their brightness with the expected.
+# Of their brightness with the expected. Noisy, blurred or covered, the right face was never below 0.95 and
+# something else never above 0.82, in 200 pictures of a benchmark.
+_LEAST_CORRELATION = 0.88
 _CERTAIN = 0.7  # Evidence from which on no other places are tried: 90 % correlation of nearly all.
 _PERFECT = 0.99  # Higher correlations tell nothing more.
 _SAME_PLACE = 0.3  # Two poses closer than this share of a face's size are one object.
@@ -20,7 +22,7 @@ _SAME_PLACE = 0.3  # Two poses closer than this share of a face's size are one o
 
 def is_certain(fit: FaceFit) -> bool:
     """Whether no better place needs to be looked for."""
-    return _evidence(fit) > _CERTAIN
+    return not _fault(fit) and _evidence(fit) > _CERTAIN
 
 
 def contour(appearance: Appearance, fit: FaceFit, camera: Camera) -> Array:

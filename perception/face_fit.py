@@ -1,5 +1,6 @@
 """The pose of a face whose look is known, fitted to the brightness of all its pixels in a picture."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,9 +11,12 @@ from numpy.typing import NDArray
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.frame import Frame
-from perception.face import BLURS, SOFTER, Face, Level, Look
+from perception.brightness import noise_of
+from perception.face import BLURS, SOFTER, Face, Level
+from perception.foreground import Part
 from perception.rigid import on_plane
 
+_KERNEL = 9  # Reach of the last blur [px].
 _N_STEPS = 6  # At each blur, at the most.
 _SMALL_STEP = 0.01  # From which on no further step is taken [px].
 _TUKEY = 4.685
@@ -63,12 +67,16 @@ class BlurredPicture:
     camera: Camera
 
     @classmethod
-    def of(cls, image: NDArray[np.uint8], noise: float, camera: Camera) -> "BlurredPicture":
-        """From how bright a picture is, with the standard deviation of its pixels' noise."""
-        levels = tuple(np.asarray(cv2.GaussianBlur(image.astype(np.float32), (0, 0), blur)) for blur in BLURS)
-        kernel = np.ravel(cv2.getGaussianKernel(9, BLURS[-1]))
+    def of(cls, image: NDArray[np.uint8], parts: Iterable[Part], camera: Camera) -> "BlurredPicture":
+        """From how bright a picture is; only in its parts may there be faces."""
+        levels = tuple(image.astype(np.float32) for _ in BLURS)
+        for rows, columns in parts:
+            part = image[rows, columns].astype(np.float32)
+            for level, blur in zip(levels, BLURS, strict=True):
+                level[rows, columns] = cv2.GaussianBlur(part, (0, 0), blur)
+        kernel = np.ravel(cv2.getGaussianKernel(_KERNEL, BLURS[-1]))
         left = float(kernel @ kernel) * 2 / 3  # Of the variance along an axis; interpolation leaves 2/3.
-        return cls(levels, noise * left, camera)
+        return cls(levels, noise_of(image) * left, camera)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,15 +96,18 @@ class _State:
 
     def expected(self, level: Level) -> Array:
         """How bright the face's pixels must be, shape (n,)."""
-        return _shades(level, level.looks[self.lens]) @ self.light
+        return level.looks[self.lens].shades @ self.light
 
     def jacobian(self, level: Level, free: int) -> Array:
         """How the difference of seen and expected brightness changes with the unknowns, shape (n, free)."""
         look = level.looks[self.lens]
+        jacobian = np.empty((len(look.brightness), free))
         in_world = self.light[0] * look.gradients @ self.frame.rotation.T
         x, y = (level.local @ self.frame.rotation.T).T
-        by_angle = in_world[:, 1] * x - in_world[:, 0] * y
-        return np.column_stack([in_world, by_angle, -_shades(level, look)])[:, :free]
+        jacobian[:, :2] = in_world
+        jacobian[:, 2] = in_world[:, 1] * x - in_world[:, 0] * y
+        jacobian[:, _POSE:] = -look.shades[:, : free - _POSE]
+        return jacobian
 
     def moved(self, step: Array) -> "_State":
         """A step further."""
@@ -117,12 +128,6 @@ class _State:
         return replace(self, light=light, lens=lens)
 
 
-def _shades(level: Level, look: Look) -> Array:
-    """How the brightness changes with each of the light's numbers, shape (n, 5)."""
-    by_axes = look.brightness[:, None] * level.across
-    return np.column_stack([look.brightness, np.ones(len(by_axes)), look.diffusion, by_axes])
-
-
 def fit_face(picture: BlurredPicture, face: Face, start: Frame) -> FaceFit | None:
     """Move a face until its pixels look as they are expected to look.
 
@@ -139,15 +144,19 @@ def fit_face(picture: BlurredPicture, face: Face, start: Frame) -> FaceFit | Non
     Returns:
         The fit; None if the face leaves the picture, or too little of it is seen.
     """
-    state: _State | None = _first(picture, face, start)
-    for i, free in enumerate(_N_EVEN):
-        state = state and _settled(picture, face, state, i, free)
-    even = state and _judged(picture, face, state, _N_EVEN[-1])
-    if state is None or even is None:
+    try:
+        state = _first(picture, face, start)
+        for i, free in enumerate(_N_EVEN):
+            state = _settled(picture, face, state, i, free)
+        even = _judged(picture, face, state, _N_EVEN[-1])
+        shaded = _judged(picture, face, _settled(picture, face, state, len(BLURS) - 1, _N_ALL), _N_ALL)
+    except _OutOfViewError:
         return None
-    state = _settled(picture, face, state, len(BLURS) - 1, _N_ALL)
-    shaded = state and _judged(picture, face, state, _N_ALL)
-    return shaded if shaded is not None and _explains_more(shaded, even) else even
+    return shaded if _explains_more(shaded, even) else even
+
+
+class _OutOfViewError(Exception):
+    """The face leaves the picture, or too little of it is seen."""
 
 
 def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
@@ -156,31 +165,31 @@ def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
     return shaded.shown > _SHOWN_IN_SHADE and shaded.correlation > least
 
 
-def _first(picture: BlurredPicture, face: Face, start: Frame) -> _State | None:
-    """The start in a light that seems right, an even factor; None if the face leaves the picture."""
+def _first(picture: BlurredPicture, face: Face, start: Frame) -> _State:
+    """The start in a light that seems right, an even factor."""
     level = face.levels[0]
     seen, inside = _seen(picture, 0, level, face.z, start)
     if inside.mean() < _LEAST_INSIDE:
-        return None
+        raise _OutOfViewError
     ratios = seen[inside] / np.maximum(level.looks[0].brightness[inside], _DARK)
     return _State(start, np.array([float(np.median(ratios)), 0.0, 0.0, 0.0, 0.0]))
 
 
-def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: int) -> _State | None:
-    """The state that explains the picture at its i-th blur best; None if the face leaves the picture."""
+def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: int) -> _State:
+    """The state that explains the picture at its i-th blur best."""
     level = face.levels[i]
     small = _SMALL_STEP * BLURS[i] / BLURS[-1] * face.metres_per_pixel
     for _ in range(_N_STEPS):
         seen, inside = _seen(picture, i, level, face.z, state.frame)
         if inside.mean() < _LEAST_INSIDE:
-            return None
+            raise _OutOfViewError
         errors = seen - state.expected(level)
         jacobian = state.jacobian(level, free)
         if i > 0:
             inside &= level.looks[state.lens].undisturbed
         weighted = jacobian * _weights(errors, inside)[:, None]
         information = weighted.T @ jacobian + _RIDGE[:free, :free]
-        step = -np.linalg.solve(information, weighted.T @ errors)
+        step: Array = -np.asarray(np.linalg.solve(information, weighted.T @ errors), np.float64)
         moved = state.moved(step)
         state, before = moved.through_the_right_lens(), state
         if np.abs(step[:3] * [1.0, 1.0, face.radius]).max() < small and state.lens == before.lens:
@@ -207,7 +216,7 @@ def _weights(errors: Array, inside: NDArray[np.bool_]) -> Array:
     return np.where(inside, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
 
 
-def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> FaceFit | None:
+def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> FaceFit:
     """How well a pose is supported by the least blurred picture.
 
     The covariance is the sandwich ``H^-1 (sum over blocks of g g') H^-1`` (Huber 1967): it takes the errors
@@ -221,11 +230,10 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     weights = _weights(errors, inside)
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
-        return None
+        raise _OutOfViewError
     jacobian = state.jacobian(level, free)
     weighted = jacobian * weights[:, None]
-    pulls = np.zeros((level.blocks.max() + 1, free))
-    np.add.at(pulls, level.blocks, weighted * errors[:, None])
+    pulls = np.stack([np.bincount(level.blocks, pull) for pull in (weighted * errors[:, None]).T], axis=1)
     information = weighted.T @ jacobian + _RIDGE[:free, :free]
     inverse = np.linalg.inv(information)
     n_blocks = len(np.unique(level.blocks[shown]))
@@ -249,8 +257,8 @@ def _correlation(expected: Array, seen: Array, light: Array, noise: float) -> fl
     It is 0 where one of them is even, or shows no more than noise.
     """
     both = np.column_stack([expected, seen])
-    a, b = (both - light @ np.linalg.lstsq(light, both, rcond=None)[0]).T
+    a, b = (both - light @ np.linalg.solve(light.T @ light, light.T @ both)).T
     variance = float(b @ b) - len(b) * noise**2
     if variance <= 0.0:
         return 0.0
-    return min(1.0, float(a @ b) / max(float(np.linalg.norm(a)) * variance**0.5, 1e-9))
+    return float(min(1.0, a @ b / max(float(np.linalg.norm(a)) * variance**0.5, 1e-9)))

@@ -53,11 +53,9 @@ class Search:
         cv2.fillPoly(inside, [np.rint(appearance.to_pixels(appearance.outline)).astype(np.int32)], 1.0)
         turned, masks = [], []
         for angle in _angles():
-            pixels = appearance.to_pixels(Frame(np.zeros(2), angle).localise(places)).astype(np.float32)
-            turned.append(cv2.remap(image, pixels, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE))
-            masks.append(
-                np.rint(cv2.remap(inside, pixels, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT))
-            )
+            pixels = appearance.to_pixels(Frame(np.zeros(2), angle).localise(places))
+            turned.append(_sampled(image, pixels, cv2.BORDER_REPLICATE))
+            masks.append(np.rint(_sampled(inside, pixels, cv2.BORDER_CONSTANT)))
         return cls(tuple(turned), tuple(masks), step, blur, appearance.z)
 
     def poses(
@@ -80,9 +78,7 @@ class Search:
                 poses.append(frame)
         return poses
 
-    def _in_part(
-        self, image: NDArray[np.uint8], camera: Camera, part: Part
-    ) -> Iterable[tuple[float, Frame]]:
+    def _in_part(self, image: NDArray[np.uint8], camera: Camera, part: Part) -> Iterable[tuple[float, Frame]]:
         """For each angle how alike the likeliest place in a part of the picture is, and the pose."""
         rows, columns = part
         corners = [[u, v] for u in (columns.start, columns.stop) for v in (rows.start, rows.stop)]
@@ -91,18 +87,12 @@ class Search:
         low = world.min(axis=0)
         width, height = (np.ceil(np.ptp(world, axis=0) / self.step).astype(int) + 1).tolist()
         places = _grid(low, self.step, (height, width))
-        pixels = camera.project(on_plane(places, self.z)).astype(np.float32)
         smooth = cv2.GaussianBlur(image[rows, columns].astype(np.float32), (0, 0), self.blur)
-        map_ = cv2.remap(
-            smooth,
-            pixels - np.array([columns.start, rows.start], np.float32),
-            None,
-            cv2.INTER_LINEAR,
-            borderMode=cv2.BORDER_REPLICATE,
-        )
-        map_ = cv2.copyMakeBorder(map_, half, half, half, half, cv2.BORDER_REPLICATE)
+        pixels = camera.project(on_plane(places, self.z)) - [columns.start, rows.start]
+        seen = _sampled(smooth, pixels, cv2.BORDER_REPLICATE)
+        seen = cv2.copyMakeBorder(seen, half, half, half, half, cv2.BORDER_REPLICATE)
         for angle, turned, mask in zip(_angles(), self.turned, self.masks, strict=True):
-            alike = cv2.matchTemplate(map_, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
+            alike = cv2.matchTemplate(seen, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
             alike = np.where(np.abs(alike) <= 1.0, alike, -1.0)
             row, column = np.unravel_index(np.argmax(alike), alike.shape)
             if alike[row, column] > _LEAST_ALIKE:
@@ -122,3 +112,9 @@ def _grid(low: Array, step: float, shape: tuple[int, int]) -> Array:
     """Places a step apart as a picture of the plane, its rows from large y to small, shape (*shape, 2)."""
     rows, columns = np.indices(shape)
     return np.asarray(low + step * np.stack([columns, shape[0] - 1 - rows], axis=-1))
+
+
+def _sampled(image: NDArray[Any], pixels: Array, border: int) -> NDArray[Any]:
+    """An image at places in it, column and row, shape (rows, columns, 2)."""
+    x, y = np.moveaxis(pixels, -1, 0).astype(np.float32)
+    return np.asarray(cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=border))

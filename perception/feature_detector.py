@@ -11,12 +11,12 @@ from cobot_lfd.appearance import Appearance
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
-from perception.brightness import brightness, noise_of
+from perception.brightness import brightness
 from perception.face import Face
 from perception.face_choice import contour, is_certain, share, told
 from perception.face_fit import BlurredPicture, FaceFit, fit_face
 from perception.face_search import Search
-from perception.foreground import Part, foreground_parts, without
+from perception.foreground import foreground_parts, without
 from perception.keypoints import FeatureKind, Keypoints, find_keypoints, nearest
 from perception.picture import Picture, check_picture
 from perception.pose_votes import vote
@@ -76,11 +76,10 @@ class _Looking:
 
     def __init__(self, image: NDArray[np.uint8], camera: Camera, kind: FeatureKind) -> None:
         """Prepare a picture, given by how bright it is."""
-        noise = noise_of(image)
         self._image, self._camera, self._kind = image, camera, kind
         self._parts = foreground_parts(image)
         self._points = find_keypoints(image, kind, self._parts)
-        self._blurred = BlurredPicture.of(image, noise, camera)
+        self._blurred = BlurredPicture.of(image, self._parts, camera)
 
     def for_all(self, groups: Sequence[Sequence[Appearance]]) -> list[list[FaceFit]]:
         """Fits of the face of each group: first where points suggest it, then wherever else it may be."""

@@ -15,7 +15,7 @@ FeatureKind = Literal["sift", "orb"]
 
 # How many times a picture is magnified before points are looked for: small objects have only
 # details of a few pixels. SIFT magnifies by itself.
-_MAGNIFIED: dict[FeatureKind, float] = {"sift": 1.25, "orb": 2.0}
+_MAGNIFIED: dict[FeatureKind, float] = {"sift": 1.0, "orb": 2.0}
 _SIFT: dict[str, Any] = {"contrastThreshold": 0.02, "edgeThreshold": 20.0, "sigma": 1.0}
 _ORB: dict[str, Any] = {
     "nfeatures": 2000,
@@ -83,10 +83,11 @@ def nearest(
         return np.zeros(len(descriptors), dtype=int), np.ones(len(descriptors))
     a, b = (_as_vectors(each, kind) for each in (descriptors, among))
     squares = (a * a).sum(axis=1)[:, None] - 2 * a @ b.T + (b * b).sum(axis=1)
-    first = np.argmin(squares, axis=1)
-    nearest_two = np.maximum(np.partition(squares, 1, axis=1)[:, :2], 0.0)
-    distances = nearest_two if kind == "orb" else np.sqrt(nearest_two)
-    return first, np.asarray(distances[:, 0] / np.maximum(distances[:, 1], 1e-9), np.float64)
+    rows, first = np.arange(len(a)), np.argmin(squares, axis=1)
+    nearest_one = squares[rows, first].copy()
+    squares[rows, first] = np.inf
+    ratios = np.maximum(nearest_one, 0.0) / np.maximum(squares.min(axis=1), 1e-9)
+    return first, np.asarray(ratios if kind == "orb" else np.sqrt(ratios), np.float64)
 
 
 def _as_vectors(descriptors: NDArray[Any], kind: FeatureKind) -> NDArray[np.float32]:

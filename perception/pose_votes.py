@@ -1,5 +1,7 @@
 """Poses that many pairs of alike points agree on."""
 
+from collections.abc import Iterator
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ _MILLIMETRES = 1e3  # OpenCV's estimators expect numbers of the order of pixels.
 
 def vote(
     local: Array, local_directions: Array, world: Array, world_directions: Array, tolerance: float, most: int
-) -> list[Frame]:
+) -> Iterator[Frame]:
     """The poses that explain most pairs of a face's point and a picture's point, the best first.
 
     Each pair says by its places and directions where the face would be; every pose is judged by the number of
@@ -33,20 +35,19 @@ def vote(
     turns = _complex(world_directions) * np.conj(_complex(local_directions))
     shifts = w - turns * x
     agree = np.abs(np.outer(turns, x) + (shifts[:, None] - w)) < tolerance
-    free, poses = np.ones(len(x), dtype=bool), []
+    free = np.ones(len(x), dtype=bool)
     for _ in range(most):
         counts = (agree & free).sum(axis=1) * free
         if not len(counts) or counts.max() < 1:
             break
         best = int(np.argmax(counts))
         chosen = agree[best] & free
-        poses.append(
+        yield (
             _fitted(local[chosen], world[chosen])
             if chosen.sum() > 1
-            else Frame([shifts[best].real, shifts[best].imag], float(np.angle(turns[best])))
+            else Frame(np.array([shifts[best].real, shifts[best].imag]), float(np.angle(turns[best])))
         )
         free &= ~chosen
-    return poses
 
 
 def _complex(vectors: Array) -> NDArray[np.complex64]:
