@@ -3,6 +3,7 @@
 from perception.board import Board as Board
 from perception.board import BoardView as BoardView
 from perception.board import find_board as find_board
+from perception.calibration import FEWEST_VIEWS as FEWEST_VIEWS
 from perception.calibration import CameraCalibration as CameraCalibration
 from perception.calibration import LensCalibration as LensCalibration
 from perception.calibration import calibrate_camera as calibrate_camera

@@ -11,6 +11,8 @@ from perception.picture import Picture
 
 _DICTIONARY = cv2.aruco.DICT_4X4_50
 _FEWEST_CORNERS = 6  # Fewer tell too little to be worth taking a view into account.
+_WINDOW = (2, 5)  # Half the side of the squares in which corners are placed exactly, least and most [px].
+_STOP = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 50, 1e-3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,11 @@ class Board:
     def width(self) -> float:
         """Extent from left to right [m]."""
         return self.columns * self.square
+
+    @property
+    def margin(self) -> float:
+        """White between a marker and the corners of its square, along either side [m]."""
+        return 0.5 * (self.square - self.marker)
 
     @property
     def height(self) -> float:
@@ -72,13 +79,29 @@ def find_board(picture: Picture, board: Board) -> BoardView | None:
     """
     charuco = _charuco(board)
     detector = cv2.aruco.CharucoDetector(charuco)
-    pixels, numbers, _, _ = detector.detectBoard(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY))
+    grey = np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY), np.uint8)
+    pixels, numbers, _, _ = detector.detectBoard(grey)
     if numbers is None or len(numbers) < _FEWEST_CORNERS:
         return None
     corners = np.asarray(charuco.getChessboardCorners(), dtype=np.float64)
     points = corners[np.ravel(numbers)]
     centred = np.array([[1.0, -1.0, 0.0]]) * (points - np.array([board.width / 2, board.height / 2, 0.0]))
-    return BoardView(centred, np.asarray(pixels, dtype=np.float64).reshape(-1, 2))
+    rough = np.asarray(pixels, dtype=np.float64).reshape(-1, 2)
+    return BoardView(centred, _refined(grey, centred, rough, board.margin))
+
+
+def _refined(grey: NDArray[np.uint8], points: Array, pixels: Array, margin: float) -> Array:
+    """Corners placed by their nearest surroundings: markers, which OpenCV lets in, draw them aside."""
+    spread = np.linalg.lstsq(_centred(points[:, :2]), _centred(pixels), rcond=None)[0]
+    pixels_per_metre = float(np.linalg.svd(spread, compute_uv=False)[-1])
+    half = int(np.clip(margin * pixels_per_metre, *_WINDOW))
+    start = pixels.astype(np.float32).reshape(-1, 1, 2)
+    placed = cv2.cornerSubPix(grey, start, (half, half), (-1, -1), _STOP)
+    return np.asarray(placed, dtype=np.float64).reshape(-1, 2)
+
+
+def _centred(values: Array) -> Array:
+    return np.asarray(values - values.mean(axis=0))
 
 
 def _charuco(board: Board) -> cv2.aruco.CharucoBoard:

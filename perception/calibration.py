@@ -14,7 +14,9 @@ from cobot_lfd.errors import DataError
 from cobot_lfd.pose import Pose
 from perception.board import BoardView
 
-_FEWEST_VIEWS = 6
+FEWEST_VIEWS = 6
+"""Of a board; fewer do not tell a camera."""
+
 _N_CAMERA = 14  # Unknowns of a camera: its pose, focal lengths, principal point, and k1, k2, p1, p2.
 _LEAST_TURN = np.deg2rad(10)  # Between the tool's poses, about two axes; else the camera's place is not told.
 
@@ -131,9 +133,9 @@ def _adjusted(camera: Camera, step: Array) -> Camera:
 
 
 def _check_number(views: Sequence[BoardView]) -> None:
-    if len(views) < _FEWEST_VIEWS:
+    if len(views) < FEWEST_VIEWS:
         raise DataError(
-            f"the board was seen {len(views)} times; at least {_FEWEST_VIEWS} views are needed. "
+            f"the board was seen {len(views)} times; at least {FEWEST_VIEWS} views are needed. "
             "Take more pictures, with all of the board in them."
         )
 

@@ -15,7 +15,7 @@ from scenes.outlines import object_models as object_models
 from scenes.placement import draw_placements as draw_placements
 from scenes.portrait import Portrait as Portrait
 from scenes.portrait import take_portrait as take_portrait
-from scenes.rendering import Renderer as Renderer
+from scenes.renderer import Renderer as Renderer
 from scenes.success import check_success as check_success
 from scenes.task import Task as Task
 from scenes.task import YawRule as YawRule

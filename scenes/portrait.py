@@ -6,7 +6,8 @@ import numpy as np
 
 from cobot_lfd.frame import Frame
 from scenes.description import SceneDescription
-from scenes.rendering import Picture, Renderer
+from scenes.renderer import Renderer
+from scenes.rendering import Picture
 from scenes.world import World
 
 _ANGLE = 0.45  # [rad] askew, so that no edge runs along the pixels

@@ -1,12 +1,7 @@
 """Pictures of the simulated scene: what its camera would see."""
 
-import importlib.util
-import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Literal
 
 import numpy as np
 import pybullet
@@ -19,13 +14,11 @@ from cobot_lfd.errors import CobotError
 from cobot_lfd.quiet import quiet_output
 from scenes.imperfections import ideal_camera, on_sensor, through_lens
 from scenes.prints import Print, draw_prints
+from scenes.renderer import Renderer
 from scenes.view import CameraDescription, Lens, Light, Sensor
 
 Picture = NDArray[np.uint8]
 """Red, green, blue, shape (height, width, 3)."""
-
-Renderer = Literal["tiny", "egl"]
-"""What draws: PyBullet's own software, or OpenGL by way of EGL."""
 
 # Where a renderer samples a pixel, measured from the pixel's centre [px]; found by measuring, held by a test.
 _GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
@@ -33,43 +26,6 @@ _GRID_OFFSET = {"tiny": np.array([0.5, -0.5]), "egl": np.zeros(2)}
 _LARGEST_EGL = (1024, 768)  # Larger pictures it only magnifies [px].
 
 _NEAR, _FAR = 0.05, 10.0  # What is nearer to or farther from the camera is not drawn [m].
-
-
-def load_renderer(client: BulletClient, renderer: Renderer) -> int | None:
-    """Make a renderer ready, before anything is built; returns the plugin's number, if it needs one.
-
-    Raises:
-        CobotError: If OpenGL does not work here.
-    """
-    if renderer == "tiny":
-        return None
-    if not egl_works():
-        raise CobotError("the renderer 'egl' does not start on this machine; use the renderer 'tiny'.")
-    return _load_egl(client)
-
-
-@cache
-def egl_works() -> bool:
-    """Whether OpenGL by way of EGL works here.
-
-    It is tried in a process of its own: where a library is missing, PyBullet's plugin ends the process.
-    """
-    probe = "from scenes.rendering import draw_with_egl; draw_with_egl()"
-    return subprocess.run([sys.executable, "-c", probe], capture_output=True, check=False).returncode == 0
-
-
-def draw_with_egl() -> None:
-    """Draw a small picture of nothing by way of EGL; ends the process where that does not work."""
-    client = BulletClient(pybullet.DIRECT)
-    if _load_egl(client) < 0:
-        sys.exit(1)
-    client.getCameraImage(16, 16, renderer=pybullet.ER_BULLET_HARDWARE_OPENGL)
-
-
-def _load_egl(client: BulletClient) -> int:
-    """Load the plugin that ships with PyBullet; returns its number, negative where there is none."""
-    found = importlib.util.find_spec("eglRenderer")
-    return int(client.loadPlugin(found.origin, "_eglRendererPlugin")) if found and found.origin else -1
 
 
 def take_picture(

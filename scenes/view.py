@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidatorFunctionWrapHandler, field_validator, model_validator
 
 from cobot_lfd.camera import Camera
 from cobot_lfd.camera_file import CameraValues, load_camera
@@ -68,6 +68,17 @@ class CameraDescription(DescriptionModel):
     sensor: Sensor = Sensor()
     samples: Annotated[int, Field(ge=1, le=16)] = 1
     calibration: Path | CameraValues | None = None
+
+    @field_validator("calibration", mode="wrap")
+    @classmethod
+    def _calibration_is_a_file(
+        cls, value: object, check: ValidatorFunctionWrapHandler
+    ) -> Path | CameraValues | None:
+        if not isinstance(value, str | Path | CameraValues | dict | None):
+            told = f"must be the name of a camera's file; given: {value!r}."
+            raise ValueError(told)  # noqa: TRY004 - pydantic tells users of this kind only
+        found: Path | CameraValues | None = check(value)
+        return found
 
     @model_validator(mode="after")
     def _looks_somewhere(self) -> "CameraDescription":

@@ -18,7 +18,8 @@ from scenes.distractors import add_distractors
 from scenes.placement import draw_placements
 from scenes.printed import printed_faces
 from scenes.prints import Print
-from scenes.rendering import Picture, Renderer, load_renderer, take_picture
+from scenes.renderer import Renderer, load_renderer
+from scenes.rendering import Picture, take_picture
 from scenes.view import CameraDescription, Light
 from scenes.watch import Watch
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from scenes.rendering import egl_works
+from scenes.renderer import egl_works
 
 needs_egl = pytest.mark.skipif(not egl_works(), reason="OpenGL by way of EGL does not work on this machine")
 RENDERERS = ("tiny", pytest.param("egl", marks=needs_egl))

@@ -57,6 +57,21 @@ def test_an_episode_that_fails_gives_exit_code_1(
         (["record", "pick_and_place", "--demos", "0", "--out", "x"], "--demos is 0; it must be at least 1."),
         (["fit", "nowhere", "--out", "model.npz"], "there is no folder nowhere"),
         (["run", "none.npz", "--scene", "pick_and_place"], "none.npz"),
+        (["look", "--scene", "sorting", "--out", "p.jpg"], "p.jpg: its name must end in .png."),
+        (
+            ["look", "--scene", "sorting", "--out", "a/p.png"],
+            "cannot write a/p.png: No such file or directory.",
+        ),
+        (
+            ["look", "--scene", "sorting", "--out", "p.png", "--seed", "-1"],
+            "--seed is -1; it must be at least 0.",
+        ),
+        (["frames", "demos", "--out", "p.bmp"], "cannot plot to p.bmp: its name must end in one of: .pdf"),
+        (
+            ["calibrate", "--scene", "sorting", "--out", "c.toml", "--views", "3"],
+            "--views is 3; it must be at least 6",
+        ),
+        (["calibrate", "--scene", "sorting", "--out", "a/c.toml"], "cannot write a/c.toml: No such file"),
     ],
 )
 def test_a_mistake_is_told_in_one_line_with_exit_code_2(

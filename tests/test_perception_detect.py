@@ -16,7 +16,7 @@ from perception import detect
 from perception.picture import Picture
 from robots import Arm, Kinematics, load_robot
 from scenes import SceneDescription, World, load_scene, object_models
-from scenes.rendering import Renderer
+from scenes.renderer import Renderer
 from tests.renderers import needs_egl
 
 pytestmark = pytest.mark.simulator

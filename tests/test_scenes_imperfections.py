@@ -101,10 +101,3 @@ def test_objects_can_be_put_elsewhere() -> None:
             assert_allclose(world.true_frames()[name].position, frame.position, atol=1e-9)
             assert world.true_frames()[name].angle == pytest.approx(frame.angle)
             assert abs(world.true_poses()[name].position[2]) < 1e-9
-
-
-@pytest.mark.simulator
-def test_a_renderer_that_does_not_work_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenes.rendering.egl_works", lambda: False)
-    with pytest.raises(CobotError, match=r"the renderer .egl. does not start on this machine"):
-        World(SCENE, 0, renderer="egl")

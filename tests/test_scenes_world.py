@@ -11,7 +11,7 @@ from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.pose import Pose
 from scenes import SceneDescription, World, check_success, load_scene, object_models
 from scenes.boxes import blocks_of
-from scenes.rendering import Renderer
+from scenes.renderer import Renderer
 from tests.renderers import RENDERERS
 
 pytestmark = pytest.mark.simulator

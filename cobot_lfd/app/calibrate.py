@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats.qmc import Halton
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
@@ -15,14 +16,16 @@ from robots.kinematics import KinematicsError
 from scenes import Renderer, SceneDescription, World
 from scenes.prints import Print
 
-_HEIGHTS = (0.12, 0.45)  # [m] of the board's middle above the table
-_MOST_TILT = np.deg2rad(35.0)
+# The board's poses: where its middle is in the picture, how high above the table [m], how much it leans and
+# which way, and how far it is turned from lying beyond the hand as seen from the arm's foot [rad].
+_LOWEST = np.array([0.1, 0.1, 0.12, 0.0, -np.pi, -np.deg2rad(75.0)])
+_HIGHEST = np.array([0.9, 0.9, 0.45, np.deg2rad(35.0), np.pi, np.deg2rad(75.0)])
 _LEAST_SAMPLES = 4  # Points of a pixel that are averaged, so that the board's edges are no stairs.
 _MOST_TRIES = 60  # For each view that is wanted.
 
-# The arm holds the board by the middle of an edge, so that its hand does not cover it; how exactly is found
-# out by the calibration. Its face looks to where the tool comes from.
-_HELD_AT = 0.03  # [m] from the board's edge to the tool
+# The arm holds the board by a handle in the middle of an edge, so that its hand does not cover it; how
+# exactly is found out by the calibration. Its face looks to where the tool comes from.
+_HANDLE = 0.10  # [m] from the board's edge to the tool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +96,8 @@ def calibrate(
     """
     samples = max(_LEAST_SAMPLES, scene.camera.samples)
     seen = scene.camera.model_copy(update={"calibration": None, "samples": samples})
-    truth, board, generator = seen.true_camera, Board(), np.random.default_rng(seed)
+    truth, board = seen.true_camera, Board()
+    draws = Halton(len(_LOWEST), rng=np.random.default_rng(seed))
     tool_from_board = _held(board)
     views: list[BoardView] = []
     tools: list[Pose] = []
@@ -102,7 +106,7 @@ def calibrate(
         for _ in range(_MOST_TRIES * n_views):
             if len(views) == n_views:
                 break
-            posture = _posture(kinematics, truth, tool_from_board, robot, generator)
+            posture = _posture(kinematics, truth, tool_from_board, robot, draws.random(1)[0])
             if posture is None:
                 continue
             arm.body.place(posture)
@@ -124,7 +128,7 @@ def calibrate(
 
 def _held(board: Board) -> Pose:
     """Where the board is in the tool's frame: beside the tool, its face looking back along its axis."""
-    return Pose(np.array([0.0, 0.5 * board.height + _HELD_AT, 0.0]), np.diag([1.0, -1.0, -1.0]))
+    return Pose(np.array([0.0, 0.5 * board.height + _HANDLE, 0.0]), np.diag([1.0, -1.0, -1.0]))
 
 
 def _posture(
@@ -132,15 +136,14 @@ def _posture(
     camera: Camera,
     tool_from_board: Pose,
     robot: RobotDescription,
-    generator: np.random.Generator,
+    draw: Array,
 ) -> Array | None:
-    """Joint positions that hold the board somewhere in the picture, tilted somehow; None if these do not."""
-    pixel = generator.uniform([0.1, 0.1], [0.9, 0.9]) * [camera.width, camera.height]
-    height = generator.uniform(*_HEIGHTS)
-    middle = np.append(camera.to_plane(pixel, height), height)
-    tilt, direction, turn = generator.uniform([0.0, -np.pi, -np.pi], [_MOST_TILT, np.pi, np.pi])
+    """Joint positions that hold the board as six numbers in 0..1 say; None where the arm cannot."""
+    column, row, height, tilt, direction, turn = _LOWEST + draw * (_HIGHEST - _LOWEST)
+    middle = camera.to_plane(np.array([column * camera.width, row * camera.height]), height)
+    away = np.arctan2(middle[1], middle[0]) + turn
     lean = Pose.from_rpy(np.zeros(3), [tilt * np.cos(direction), tilt * np.sin(direction), 0.0])
-    world_from_board = Pose.from_rpy(middle, [0.0, 0.0, turn]) @ lean
+    world_from_board = Pose.from_rpy([*middle, height], [0.0, 0.0, away + 0.5 * np.pi]) @ lean
     try:
         return kinematics.inverse(world_from_board @ tool_from_board.inverse(), np.array(robot.home))
     except KinematicsError:

@@ -43,6 +43,16 @@ def told(path: Path, doing: str) -> Iterator[None]:
         raise DataError(f"cannot {doing} {path}: {reason}. {remedy}") from error
 
 
+def require_folder(file: Path) -> None:
+    """Refuse a file that cannot be written because there is no such folder, before much work goes into it.
+
+    Raises:
+        DataError: If the folder is missing or is a file.
+    """
+    with told(file, "write"):
+        os.stat(file.parent / ".")
+
+
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
     """Let one process at a time work inside the block; the system gives the lock back when a process dies."""

@@ -7,9 +7,11 @@ import numpy as np
 from cobot_lfd.app.calibrate import CalibrationSession
 from cobot_lfd.app.calibrate import calibrate as calibrate_scene
 from cobot_lfd.app.commands.exit_codes import DONE
-from cobot_lfd.app.commands.options import require_positive
+from cobot_lfd.app.commands.options import require_at_least
+from cobot_lfd.app.disk import require_folder, told
 from cobot_lfd.app.progress import progress
 from cobot_lfd.camera_file import save_camera
+from perception import FEWEST_VIEWS
 from robots import load_robot
 from scenes import Renderer, load_scene
 
@@ -33,14 +35,17 @@ def calibrate(
         seed: Decides the poses, and the noise of the camera.
         renderer: What draws the pictures.
     """
-    require_positive("views", views)
+    require_at_least(FEWEST_VIEWS, "views", views)
+    require_at_least(0, "seed", seed)
+    require_folder(out)
     described = load_scene(scene)
     with progress("calibrating", views) as report:
         session = calibrate_scene(
             described, load_robot(robot), n_views=views, seed=seed, renderer=renderer, report=report
         )
     _tell(session)
-    save_camera(session.found.camera, out)
+    with told(out, "write"):
+        save_camera(session.found.camera, out)
     print(out)
     return DONE
 

@@ -9,7 +9,7 @@ from typing import Literal
 from tyro.conf import OmitArgPrefixes, Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, INTERRUPTED, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.commands.options import require_positive
+from cobot_lfd.app.commands.options import require_at_least, require_positive
 from cobot_lfd.app.evaluation.options import PlanOptions
 from cobot_lfd.app.evaluation.perturbation import Sweep
 from cobot_lfd.app.evaluation.run import Where, run
@@ -70,6 +70,7 @@ def evaluate(
         json: Print the summary as JSON.
     """
     require_positive("workers", workers)
+    require_at_least(0, "seed", seed)
     where = Where(workers, scheduler, time_limit, videos == "failures")
     if resume is not None:
         folder = RunFolder.open(resume)

@@ -10,6 +10,7 @@ from cobot_lfd.app.discovery.camera import camera_of
 from cobot_lfd.app.discovery.discover import discover
 from cobot_lfd.app.discovery.picture import draw_discovery
 from cobot_lfd.app.discovery.told import told
+from cobot_lfd.app.pictures.plot import require_plot_file
 
 
 def frames(demos: Positional[Path], *, out: Path | None = None) -> int:
@@ -22,6 +23,8 @@ def frames(demos: Positional[Path], *, out: Path | None = None) -> int:
         demos: Folder of demonstrations.
         out: File (.png, .svg or .pdf) for a picture of what was found in each demonstration.
     """
+    if out is not None:
+        require_plot_file(out)
     episodes = load_kept(demos)
     discovery = discover(episodes, camera_of(episodes))
     print(told(discovery))

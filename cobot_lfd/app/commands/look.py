@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
+from cobot_lfd.app.commands.options import require_at_least
 from cobot_lfd.app.perceive import View, perceive
-from cobot_lfd.app.pictures.draw import draw_detections, save_picture
+from cobot_lfd.app.pictures.draw import draw_detections, require_picture_file, save_picture
 from cobot_lfd.app.sought import sought
 from cobot_lfd.detection import Detection
 from scenes import Renderer, World, load_scene
@@ -24,6 +25,8 @@ def look(
         renderer: What draws the scene: tiny needs nothing, egl draws other colours and shadows.
         camera: File of a calibrated camera (cobot-lfd calibrate), by which the picture is read.
     """
+    require_at_least(0, "seed", seed)
+    require_picture_file(out)
     described = load_scene(scene, calibration=camera)
     with World(described, seed, renderer=renderer) as world:
         view = perceive(world)

@@ -9,5 +9,14 @@ def require_positive(option: str, value: int) -> None:
     Raises:
         CobotError: If ``value`` is less than 1.
     """
-    if value < 1:
-        raise CobotError(f"--{option} is {value}; it must be at least 1.")
+    require_at_least(1, option, value)
+
+
+def require_at_least(least: int, option: str, value: int) -> None:
+    """Refuse an option that is too small.
+
+    Raises:
+        CobotError: If ``value`` is less than ``least``.
+    """
+    if value < least:
+        raise CobotError(f"--{option} is {value}; it must be at least {least}.")

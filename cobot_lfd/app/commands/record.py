@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
-from cobot_lfd.app.commands.options import require_positive
+from cobot_lfd.app.commands.options import require_at_least, require_positive
 from cobot_lfd.app.progress import progress
 from cobot_lfd.app.recording.record import record_session
 from cobot_lfd.errors import CobotError
@@ -43,6 +43,7 @@ def record(
         open: Open the page in the browser.
     """
     require_positive("demos", demos)
+    require_at_least(0, "seed", seed)
     if hand == "browser":
         if camera is not None:
             raise CobotError(

@@ -6,14 +6,15 @@ from pathlib import Path
 from tyro.conf import Positional
 
 from cobot_lfd.app.commands.exit_codes import DONE, NOT_ALL_SUCCEEDED
+from cobot_lfd.app.commands.options import require_at_least
 from cobot_lfd.app.demonstrations.store import load_kept
 from cobot_lfd.app.discovery.recognised import demonstrations_of
 from cobot_lfd.app.episode import Bench, EpisodeRun, run_episode
 from cobot_lfd.app.evaluate import Job, bench_for
-from cobot_lfd.app.pictures.draw import save_picture
+from cobot_lfd.app.pictures.draw import require_picture_file, save_picture
 from cobot_lfd.app.pictures.film import filming
 from cobot_lfd.app.pictures.illustrate import drawn_view
-from cobot_lfd.app.pictures.plot import plot_model
+from cobot_lfd.app.pictures.plot import plot_model, require_plot_file
 from cobot_lfd.detection import Detection
 from cobot_lfd.motion import TimingMethod
 
@@ -50,6 +51,11 @@ def run(
         timing: How the motion along the path gets its times: simple, or near_optimal, which is faster and
             takes longer to compute.
     """
+    require_at_least(0, "seed", seed)
+    if picture:
+        require_picture_file(picture)
+    if plot:
+        require_plot_file(plot)
     bench = bench_for(Job(scene, robot, model, covered, compliant, timing, camera))
     with filming(video) if video else nullcontext() as film:
         episode = run_episode(bench, seed, film=film)

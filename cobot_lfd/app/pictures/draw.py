@@ -7,10 +7,11 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cobot_lfd.app.disk import write_file
+from cobot_lfd.app.disk import require_folder, write_file
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, ObjectModel
+from cobot_lfd.errors import CobotError
 
 Picture = NDArray[np.uint8]
 Colour = tuple[int, int, int]
@@ -69,6 +70,17 @@ def draw_detections(
     if judged:
         canvas.note(f"ellipses: {_N_SIGMA:.0f} standard errors, drawn {_MAGNIFIED:.0f} times as large")
     return canvas.picture
+
+
+def require_picture_file(file: Path) -> None:
+    """Refuse a file that no picture can be written to, before one is taken.
+
+    Raises:
+        CobotError: If its name does not end in .png, or there is no such folder.
+    """
+    if file.suffix.lower() != ".png":
+        raise CobotError(f"cannot write a picture to {file}: its name must end in .png.")
+    require_folder(file)
 
 
 def save_picture(picture: Picture, file: Path) -> Path:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cobot_lfd.app.disk import write_file
+from cobot_lfd.app.disk import require_folder, write_file
 from cobot_lfd.arrays import Array
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.errors import CobotError
@@ -171,10 +171,11 @@ def require_plot_file(file: Path) -> None:
     """Refuse a file that no plot can be written to.
 
     Raises:
-        CobotError: If its ending is unknown.
+        CobotError: If its ending is unknown, or there is no such folder.
     """
     if file.suffix.lower() not in _FILE_KINDS:
         raise CobotError(f"cannot plot to {file}: its name must end in one of: {', '.join(_FILE_KINDS)}.")
+    require_folder(file)
 
 
 def save_figure(figure: Figure, file: Path) -> Path:
