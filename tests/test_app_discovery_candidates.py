@@ -39,16 +39,18 @@ def test_two_colours_of_one_object_move_as_one(tmp_path: Path) -> None:
     assert hand.tests[0].holds
 
 
-def test_what_is_printed_on_a_thing_tells_its_direction(tmp_path: Path) -> None:
+def test_what_is_printed_on_a_thing_tells_its_direction_and_walls_its_height(tmp_path: Path) -> None:
     board = '[objects.board]\nprint = { kind = "circuit_board", seed = 3 }'
-    candidates, truth = seen(tmp_path / "print.toml", HANDOVER.replace("[objects.board]", board))
+    candidates, truth = seen(tmp_path / "print.toml", HANDOVER.replace("[objects.board]", board), n=4)
     (printed,) = (model for model in candidates.models.values() if model.found_by == "features")
     turns = []
     for sighting, frames in zip(candidates.tracks[printed.name].sightings, truth, strict=True):
         assert isinstance(sighting, Detection), sighting
         turns.append(sighting.frame.angle - frames["board"].angle)
-        assert np.linalg.norm(sighting.frame.position - frames["board"].position) < 0.006  # [m]
-    assert max(abs(wrap_angle(turn - turns[0])) for turn in turns) < np.deg2rad(4.0)
+        assert np.linalg.norm(sighting.frame.position - frames["board"].position) < 0.002  # [m]
+    assert max(abs(wrap_angle(turn - turns[0])) for turn in turns) < np.deg2rad(1.0)
+    assert printed.z == pytest.approx(0.02, abs=0.006)  # [m]
+    assert np.ptp(printed.outline, axis=0) == pytest.approx([0.06, 0.04], abs=0.003)
 
 
 def test_two_things_that_look_the_same_are_named_from_left_to_right(tmp_path: Path) -> None:

@@ -31,7 +31,6 @@ from cobot_lfd.frame import Frame, wrap_angle
 from scenes import SceneDescription, draw_placements, load_scene, scene_names
 
 ROBOT = "panda"
-FIRST_SEED = 20_000  # Of the first scene of the first set; nothing was tuned on these.
 MOST_SPREAD = 0.004, np.deg2rad(4.0)  # Of an object as seen from its frame over the demonstrations [m], [rad]
 FARTHEST = 0.01  # [m] of a frame whose direction is not known from the middle of its object
 
@@ -45,12 +44,14 @@ class Job:
         number: Of the set.
         n_demonstrations: How many demonstrations it has.
         folder: Folder of recorded demonstrations that it is drawn from; empty for a fresh, scripted set.
+        first_seed: Of a fresh set's first demonstration.
     """
 
     scene: str
     number: int
     n_demonstrations: int
     folder: str
+    first_seed: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +83,7 @@ def main(
     sets: int = 30,
     demos: int = 6,
     recorded: Path | None = None,
+    seed: int = 40_000,
     workers: int = 1,
 ) -> None:
     """Run the sets that are missing in a file, and print the table of all that are in it.
@@ -93,12 +95,19 @@ def main(
         sets: Number of training sets of each scene.
         demos: Demonstrations in a set.
         recorded: Folder with a folder of recorded demonstrations per scene, from which the sets are drawn.
+        seed: Of the first demonstration of the first set, where nothing is recorded; each further one has the
+            next. Nothing was tuned on those from 40000 on.
         workers: Processes.
     """
     names = [f"{name}@{variant}" for name in scenes or scene_names()]
     folder = {name: str(recorded / name.partition("@")[0]) if recorded else "" for name in names}
     done = {(row.scene, row.number) for row in _read(out)}
-    jobs = [Job(name, n, demos, folder[name]) for n in range(sets) for name in names if (name, n) not in done]
+    jobs = [
+        Job(name, n, demos, folder[name], seed + n * demos)
+        for n in range(sets)
+        for name in names
+        if (name, n) not in done
+    ]
     out.parent.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(workers) as pool, out.open("a", encoding="utf-8") as file:
         for future in as_completed([pool.submit(run, job) for job in jobs]):
@@ -159,8 +168,8 @@ def _spread(frames: Sequence[Frame], truth: Sequence[Frame], symmetric: bool) ->
 
 def _scripted(job: Job, scene: SceneDescription) -> tuple[list[RecordedEpisode], list[dict[str, Frame]]]:
     """Demonstrations as the hand wants them; every set has seeds of its own."""
-    first = FIRST_SEED + job.number * job.n_demonstrations
-    pairs = [sketch_episode(job.scene, scene, ROBOT, first + k) for k in range(job.n_demonstrations)]
+    seeds = range(job.first_seed, job.first_seed + job.n_demonstrations)
+    pairs = [sketch_episode(job.scene, scene, ROBOT, seed) for seed in seeds]
     return [episode for episode, _ in pairs], [dict(frames) for _, frames in pairs]
 
 

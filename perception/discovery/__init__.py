@@ -13,3 +13,4 @@ from perception.discovery.names import names_of as names_of
 from perception.discovery.propose import Thing as Thing
 from perception.discovery.propose import propose as propose
 from perception.discovery.recognise import recognise as recognise
+from perception.discovery.texture import textured as textured

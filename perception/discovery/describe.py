@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
 from perception.assignment import quality
 from perception.discovery.face import with_face
-from perception.discovery.height import height
-from perception.discovery.polygon import outline, symmetry
+from perception.discovery.height import height, lifted_to
+from perception.discovery.polygon import middle, outline, symmetry
 from perception.discovery.propose import Thing
 from perception.discovery.template import Template, align, mean_silhouette
 from perception.mixture import Mixture
@@ -59,8 +58,8 @@ def describe(
     Returns:
         The description; None if no outline fits.
     """
-    middle = 0.5 * np.array([camera.width, camera.height])
-    order = np.argsort([np.linalg.norm(thing.region.centroid - middle) for thing in things])
+    centre = 0.5 * np.array([camera.width, camera.height])
+    order = np.argsort([np.linalg.norm(thing.region.centroid - centre) for thing in things])
     pictures, things = [pictures[i] for i in order], [things[i] for i in order]
     tops = [_upper_side(picture, thing) for picture, thing in zip(pictures, things, strict=True)]
     z, unexplained = height(tops, things, camera)
@@ -76,7 +75,7 @@ def _outlined(
 ) -> Description | None:
     """The outline at a height, walls below it down to another, found from poses and they from it, in turn."""
     frames, half = align(things, camera)
-    frames = [_lifted(frame, camera, z) for frame in frames]
+    frames = [lifted_to(frame, camera, z) for frame in frames]
     description = None
     for _ in range(_N_ROUNDS):
         model = _model(name, mean_silhouette(things, camera, frames, z, half), things, base_z)
@@ -113,16 +112,11 @@ def _fit(
     return fit_outline(picture, camera, model, Mixture.of(thing.region.colour, thing.table), start)
 
 
-def _lifted(frame: Frame, camera: Camera, z: float) -> Frame:
-    """The frame whose image at a height is that of one on the table."""
-    return Frame(camera.to_plane(camera.project([*frame.position, 0.0]), z), frame.angle)
-
-
 def _model(name: str, template: Template, things: Sequence[Thing], base_z: float) -> ObjectModel | None:
     corners = outline(template)
     if corners is None:
         return None
-    corners = corners - _middle(corners)
+    corners = corners - middle(corners)
     colour = np.median([thing.region.colour for thing in things], axis=0) / 255.0
     return ObjectModel(
         name=name,
@@ -140,11 +134,3 @@ def _straightened(model: ObjectModel) -> tuple[ObjectModel, Frame]:
     x, y = sides[int(np.linalg.norm(sides, axis=1).argmax())]
     turn = Frame(np.zeros(2), float(np.arctan2(y, x)))
     return replace(model, outline=turn.localise(model.outline)), turn
-
-
-def _middle(corners: Array) -> Array:
-    """The centre of a polygon's area, shape (2,)."""
-    x, y = corners.T
-    nx, ny = np.roll(corners, -1, axis=0).T
-    cross = x * ny - nx * y
-    return np.asarray([((x + nx) * cross).sum(), ((y + ny) * cross).sum()]) / (3 * float(cross.sum()))

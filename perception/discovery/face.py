@@ -14,7 +14,10 @@ import numpy as np
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, ObjectModel
 from cobot_lfd.frame import Frame
-from perception.discovery.propose import Thing
+from perception.discovery.height import height_of_outline
+from perception.discovery.polygon import middle, outline
+from perception.discovery.propose import Thing, whole
+from perception.discovery.template import common_silhouette, half_side
 from perception.feature_detector import FeatureDetector
 from perception.picture import Picture
 from perception.reference import learn_appearance
@@ -50,13 +53,52 @@ def with_face(
         return model
     detector = FeatureDetector((face,))
     found = [detector.detect(picture, camera)[0] for picture in pictures[1:]]
-    agree = [
-        isinstance(item, Detection) and _same(item.frame, frame, model.symmetry)
-        for item, frame in zip(found, frames[1:], strict=True)
-    ]
-    if np.mean(agree) < _LEAST_SEEN:
+    agree = {0: frames[0]} | {
+        n: item.frame
+        for n, item in enumerate(found, start=1)
+        if isinstance(item, Detection) and _same(item.frame, frames[n], model.symmetry)
+    }
+    if len(agree) - 1 < _LEAST_SEEN * len(found):
         return model
-    return replace(model, symmetry=1, found_by="features", appearance=face)
+    turned = replace(model, symmetry=1, found_by="features", appearance=face)
+    return _upright(
+        turned, pictures[0], [(whole(pictures[n], things[n]), f) for n, f in agree.items()], camera
+    )
+
+
+def _upright(
+    model: ObjectModel, picture: Picture, seen: Sequence[tuple[Thing, Frame]], camera: Camera
+) -> ObjectModel:
+    """The model with the height and the outline that its face and the walls below it have together.
+
+    Args:
+        model: As the face was found.
+        picture: The first picture.
+        seen: In the pictures in which it was found, the first among them, all that belongs to the thing and
+            where the face is.
+        camera: The camera.
+    """
+    things = [thing for thing, _ in seen]
+    frames = [_moved(frame, camera, model.z, 0.0) for _, frame in seen]
+    z = height_of_outline(things, frames, camera)
+    frames = [_moved(frame, camera, 0.0, z) for frame in frames]
+    corners = outline(common_silhouette(things, camera, frames, z, half_side(things, frames, camera)))
+    if corners is None:
+        return model
+    shift = Frame(middle(corners), 0.0)
+    corners, frame = shift.localise(corners), frames[0] @ shift
+    try:
+        face = learn_appearance(
+            model.name, picture, camera, z, camera.project(on_plane(frame.apply(corners), z)), frame=frame
+        )
+    except ValueError:  # Not all of it is in the picture.
+        return model
+    return replace(model, outline=corners, z=z, appearance=face)
+
+
+def _moved(frame: Frame, camera: Camera, z: float, to: float) -> Frame:
+    """A frame at a height as it looks at another."""
+    return Frame(camera.to_plane(camera.project([*frame.position, z]), to), frame.angle)
 
 
 def _varied(picture: Picture, thing: Thing) -> bool:

@@ -4,7 +4,7 @@ Whatever the outline, what is seen of an upright thing is its upper side and tha
 below it, down to the table. So the height is the one at which these images together cover the whole region.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import cv2
 import numpy as np
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
+from cobot_lfd.frame import Frame
 from perception.discovery.propose import Thing
+from perception.discovery.template import common_silhouette, drawn, half_side
 
 _HEIGHTS = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12)
 """That are tried first [m]."""
@@ -34,16 +36,49 @@ def height(tops: Sequence[Thing], whole: Sequence[Thing], camera: Camera) -> tup
         The height [m], and how much of the regions it does not explain, as a share of their area.
     """
     pairs = list(zip(tops, whole, strict=True))
+    z, wrong = _best(lambda z: sum(_unexplained(top, thing, camera, z) for top, thing in pairs))
+    return z, wrong / sum(thing.region.area for thing in whole)
+
+
+def height_of_outline(whole: Sequence[Thing], frames: Sequence[Frame], camera: Camera) -> float:
+    """The height of upper sides that no brightness tells from the walls, as something is printed on them.
+
+    The walls are seen on another side wherever the thing lies. So what the regions have in common, laid on
+    one another at the right height, is the upper side; it and its walls explain all regions there.
+
+    Args:
+        whole: The regions that show the thing in several pictures.
+        frames: Where it is in each of them, as it looks on the table's plane.
+        camera: The camera.
+    """
+    half = half_side(whole, frames, camera)
+
+    def unexplained(z: float) -> float:
+        lifted = [lifted_to(frame, camera, z) for frame in frames]
+        upper = common_silhouette(whole, camera, lifted, z, half)
+        return sum(
+            _unexplained(drawn(upper, thing, camera, frame, _MARGIN), thing, camera, z)
+            for thing, frame in zip(whole, lifted, strict=True)
+        )
+
+    return _best(unexplained)[0]
+
+
+def lifted_to(frame: Frame, camera: Camera, z: float) -> Frame:
+    """The frame whose image at a height is that of one on the table."""
+    return Frame(camera.to_plane(camera.project([*frame.position, 0.0]), z), frame.angle)
+
+
+def _best(unexplained: Callable[[float], float]) -> tuple[float, float]:
+    """The lowest of the heights that explain about as much as any, and how much that leaves unexplained."""
     wrong: dict[float, float] = {}
     heights: tuple[float, ...] = _HEIGHTS
     for step in (*_FINER, None):
-        wrong |= {
-            z: sum(_unexplained(top, thing, camera, z) for top, thing in pairs) for z in heights if z >= 0
-        }
+        wrong |= {z: unexplained(z) for z in heights if z >= 0}
         best = min(wrong, key=wrong.__getitem__)
         heights = () if step is None else (best - step, best + step)
     lowest = min(z for z, value in wrong.items() if value <= _NO_WORSE * wrong[best] + 1e-9)
-    return lowest, wrong[lowest] / sum(thing.region.area for thing in whole)
+    return lowest, wrong[lowest]
 
 
 def _unexplained(top: Thing, whole: Thing, camera: Camera, z: float) -> float:

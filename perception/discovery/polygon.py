@@ -33,6 +33,14 @@ def outline(template: Template) -> Array | None:
     return sharp if _signed_area(sharp) > 0 else sharp[::-1]
 
 
+def middle(corners: Array) -> Array:
+    """The centre of a polygon's area [m], shape (2,)."""
+    x, y = corners.T
+    nx, ny = np.roll(corners, -1, axis=0).T
+    cross = x * ny - nx * y
+    return np.asarray([((x + nx) * cross).sum(), ((y + ny) * cross).sum()]) / (3 * float(cross.sum()))
+
+
 def symmetry(corners: Array) -> int:
     """Number of turns within a full circle, about the origin, that look the same."""
     return next((k for k in _SYMMETRIES if _looks_the_same(corners, 2 * np.pi / k)), 1)

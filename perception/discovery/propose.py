@@ -56,6 +56,22 @@ def propose(picture: Picture, camera: Camera) -> tuple[Thing, ...]:
     return tuple(sorted(things, key=lambda thing: -thing.region.area))
 
 
+def whole(picture: Picture, thing: Thing) -> Thing:
+    """All that hangs together with a thing and has not the table's colour, whatever colours it has."""
+    mask = (label_colours(picture, thing.table) >= 0).astype(np.uint8)
+    opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    contours, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    rows, columns = thing.mask.shape
+    x, y = thing.corner
+    best = np.zeros_like(mask), 0
+    for contour in contours:
+        part = np.zeros_like(mask)
+        cv2.drawContours(part, [contour], -1, 1, cv2.FILLED)
+        common = int(part[y : y + rows, x : x + columns][thing.mask].sum())
+        best = max(best, (part, common), key=lambda item: item[1])
+    return next(iter(_things(picture, best[0] > 0, thing.table)), thing)
+
+
 def _things(picture: Picture, mask: NDArray[np.bool_], table: Array) -> list[Thing]:
     """The connected parts of a mask, without what is thinner than three pixels."""
     opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))

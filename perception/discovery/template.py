@@ -1,7 +1,7 @@
 """The mean silhouette of a thing over several pictures, seen from above in the thing's own frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -38,6 +38,10 @@ class Template:
         """Places given by column and row, shape (n, 2), in the thing's frame [m]."""
         return np.asarray((cells + 0.5) * _CELL - self.half)
 
+    def to_cells(self, metres: Array) -> Array:
+        """The inverse of ``to_metres``, shape (..., 2)."""
+        return np.asarray((metres + self.half) / _CELL - 0.5)
+
 
 def silhouette(thing: Thing, camera: Camera, frame: Frame, z: float, half: float) -> Template:
     """What one picture shows of a thing, from above, in a frame.
@@ -73,17 +77,49 @@ def mean_silhouette(
     return Template(np.asarray(np.mean(covers, axis=0)), z)
 
 
+def drawn(template: Template, thing: Thing, camera: Camera, frame: Frame, margin: int) -> Thing:
+    """A thing as a picture would show it that had the template's silhouette only, shape by shape alike.
+
+    Args:
+        template: The silhouette.
+        thing: What the picture shows; its box, a little larger, is drawn in.
+        camera: The camera.
+        frame: Where the silhouette lies.
+        margin: By how much the box is larger [px].
+    """
+    corner = thing.corner - margin
+    rows, columns = np.array(thing.mask.shape) + 2 * margin
+    pixels = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1) + corner
+    cells = template.to_cells(frame.localise(camera.to_plane(pixels, template.z))).astype(np.float32)
+    cover = cv2.remap(template.cover.astype(np.float32), cells[..., 0], cells[..., 1], cv2.INTER_LINEAR)
+    mask = np.asarray(cover) > 0.5
+    return replace(thing, mask=mask, corner=corner, region=replace(thing.region, area=float(mask.sum())))
+
+
+def half_side(things: Sequence[Thing], frames: Sequence[Frame], camera: Camera) -> float:
+    """Half the side of a square around a frame's origin on the table that holds all silhouettes [m]."""
+    reach = [
+        float(np.linalg.norm(camera.to_plane(thing.region.hull, 0.0) - frame.position, axis=1).max())
+        for thing, frame in zip(things, frames, strict=True)
+    ]
+    return max(reach) + _MARGIN
+
+
+def common_silhouette(
+    things: Sequence[Thing], camera: Camera, frames: Sequence[Frame], z: float, half: float
+) -> Template:
+    """What all pictures have in common: walls are seen on another side in each."""
+    covers = [silhouette(t, camera, f, z, half).cover for t, f in zip(things, frames, strict=True)]
+    return Template(np.asarray(np.min(covers, axis=0)), z)
+
+
 def align(things: Sequence[Thing], camera: Camera) -> tuple[list[Frame], float]:
     """Rough poses that lay silhouettes on one another, and half the side of a square that holds them [m].
 
     The first thing's frame lies in the middle of its silhouette, along the world's axes.
     """
     middles = [_middle(thing, camera) for thing in things]
-    half = max(
-        float(np.linalg.norm(camera.to_plane(thing.region.hull, 0.0) - middle, axis=1).max())
-        for thing, middle in zip(things, middles, strict=True)
-    )
-    half += _MARGIN
+    half = half_side(things, [Frame(middle, 0.0) for middle in middles], camera)
     reference = silhouette(things[0], camera, Frame(middles[0], 0.0), 0.0, half).cover
     frames = [Frame(middles[0], 0.0)]
     for thing, middle in zip(things[1:], middles[1:], strict=True):

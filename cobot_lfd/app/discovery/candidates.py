@@ -21,6 +21,7 @@ from perception.discovery import (
     names_of,
     propose,
     recognise,
+    textured,
 )
 
 BASE = "base"
@@ -57,7 +58,9 @@ def find_candidates(pictures: Sequence[Picture], camera: Camera) -> Candidates:
     kinds = match(things, camera)
     learnt = [(kind, _learn(kind, pictures, things, camera)) for kind in kinds if kind.n_seen > 1]
     known = [(kind, found) for kind, found in learnt if found is not None]
-    models = _named([(kind, found.model) for kind, found in known])
+    told = [[things[n][i] for kind, _ in known for i in kind.members[n]] for n in range(len(pictures))]
+    alone = [(1, model) for model in textured(pictures, camera, told)]
+    models = _named([*((kind.count, found.model) for kind, found in known), *alone])
     seen = [recognise(p, camera, models, shown) for p, shown in zip(pictures, things, strict=True)]
     tracks = [base_track(BASE, len(pictures))]
     tracks += [Track(model.name, tuple(found[i] for found in seen)) for i, model in enumerate(models)]
@@ -82,9 +85,9 @@ def _learn(
     return describe("thing", [p for p, _ in shown], [t for _, t in shown], camera) if len(shown) > 1 else None
 
 
-def _named(kinds: Sequence[tuple[Kind, ObjectModel]]) -> list[ObjectModel]:
-    """A model for each thing: one of a kind, or several that look the same."""
-    repeated = [model for kind, model in kinds for _ in range(kind.count)]
+def _named(models: Sequence[tuple[int, ObjectModel]]) -> list[ObjectModel]:
+    """A model for each thing, of as many as look the same."""
+    repeated = [model for count, model in models for _ in range(count)]
     names = names_of([255.0 * model.colour for model in repeated])
     return [_called(model, name) for model, name in zip(repeated, names, strict=True)]
 
