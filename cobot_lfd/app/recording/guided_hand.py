@@ -4,11 +4,11 @@ from collections import deque
 from time import perf_counter
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from cobot_lfd.app.recording.hand import HandAction
 from cobot_lfd.arrays import Array
 from cobot_lfd.frame import wrap_angle
+from cobot_lfd.rotation import rotation_matrix, rotation_vector
 from cobot_lfd.tool import pointing_down
 from robots import ArmState
 from scenes import Task
@@ -54,7 +54,7 @@ class GuidedHand:
         self._yaw: float | None = None
         self._goal: Array | None = None
         self._anchor, self._velocity = np.zeros(3), np.zeros(3)
-        self._rotation = Rotation.identity()
+        self._rotation = np.eye(3)
 
     @property
     def pulls(self) -> bool:
@@ -115,7 +115,7 @@ class GuidedHand:
         tool = state.world_from_tool
         force = _STIFFNESS * (self._anchor - tool.position)
         force += _DAMPING * (self._velocity - state.tool_velocity)
-        turned = (self._rotation * Rotation.from_matrix(tool.rotation.T)).as_rotvec()
+        turned = rotation_vector(self._rotation @ tool.rotation.T)
         torque = _TURN_STIFFNESS * turned - _TURN_DAMPING * state.tool_rate
         arrived, self._arrived = self._arrived, None
         if arrived is not None:
@@ -132,7 +132,7 @@ class GuidedHand:
         tool = state.world_from_tool
         self._goal = self._anchor = tool.position
         self._velocity = np.zeros(3)
-        self._rotation = Rotation.from_matrix(tool.rotation)
+        self._rotation = tool.rotation
         self._yaw = float(np.arctan2(tool.rotation[1, 0], tool.rotation[0, 0]))
         if self._height is None and self.guide:
             self._height = self._task.travel_height
@@ -165,11 +165,10 @@ class GuidedHand:
         turn, self._turn = self._turn, 0.0
         self._yaw = wrap_angle((self._yaw or 0.0) + turn)
         if self.guide or turn:
-            wanted = Rotation.from_matrix(pointing_down(self._yaw))
-            way = (wanted * self._rotation.inv()).as_rotvec()
-            self._rotation = (
-                Rotation.from_rotvec(_at_most(way, _TURN_SPEED * self._time_step)) * self._rotation
-            )
+            wanted, step = pointing_down(self._yaw), _TURN_SPEED * self._time_step
+            way = rotation_vector(wanted @ self._rotation.T)
+            arrives = np.linalg.norm(way) <= step
+            self._rotation = wanted if arrives else rotation_matrix(_at_most(way, step)) @ self._rotation
 
     def _carries(self, state: ArmState) -> bool:
         """Whether the tool is in the plane of the carry, with the guide on and a part, if it can hold one."""

@@ -57,9 +57,9 @@ def looks_of(client: Any, body: int) -> tuple[Look, ...]:
 def link_poses(client: Any, body: int) -> dict[int, Array]:
     """Where the links of a body are: number to x, y, z [m] and quaternion x, y, z, w, shape (7,)."""
     inertial = client.getDynamicsInfo(body, -1)
-    centre_from_base = Pose.from_quaternion(inertial[3], inertial[4]).inverse()
-    base = Pose.from_quaternion(*client.getBasePositionAndOrientation(body)) @ centre_from_base
-    poses = {-1: np.concatenate([base.position, base.quaternion])}
+    centre_from_base = client.invertTransform(inertial[3], inertial[4])
+    world_from_centre = client.getBasePositionAndOrientation(body)
+    poses = {-1: np.concatenate(client.multiplyTransforms(*world_from_centre, *centre_from_base))}
     n_links = client.getNumJoints(body)
     if n_links:
         states = client.getLinkStates(body, list(range(n_links)), computeForwardKinematics=True)

@@ -64,8 +64,9 @@ class Page:
         with self._server.atomic():
             self._table.show(world, robot_body)
         if first and self._table.robot is not None:
-            for link in sorted(self._table.robot.meshes)[-3:]:
-                self._listen(self._table.robot.meshes[link])
+            for link in sorted(self._table.robot.shapes)[-3:]:
+                for shape in self._table.robot.shapes[link]:
+                    self._listen(shape)
         if self._panel is not None:
             self._panel.show_view(world, view)
             self._draw_paths()

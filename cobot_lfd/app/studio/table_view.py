@@ -1,14 +1,12 @@
 """Table, objects and arm as nodes of the page's scene."""
 
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 
 from cobot_lfd.app.studio.looks import Look, link_poses, looks_of
+from cobot_lfd.app.studio.meshes import Colour, patches_of
 from cobot_lfd.arrays import Array
 from scenes import World
 
@@ -18,7 +16,7 @@ class BodyView:
 
     Attributes:
         nodes: Number of a link to the node that moves with it.
-        meshes: The visible shapes, which can be dragged.
+        shapes: Number of a link to the nodes of its visible shapes, which can be dragged.
     """
 
     def __init__(self, server: viser.ViserServer, client: Any, body: int, name: str) -> None:
@@ -28,9 +26,9 @@ class BodyView:
             link: server.scene.add_frame(f"{name}/{link + 1}", show_axes=False)
             for link in sorted({look.link for look in looks})
         }
-        self.meshes = {
-            look.link: _add_shape(server, look, f"{name}/{look.link + 1}/{i}") for i, look in enumerate(looks)
-        }
+        self.shapes: dict[int, list[Any]] = {link: [] for link in self.nodes}
+        for i, look in enumerate(looks):
+            self.shapes[look.link] += _add_shape(server, look, f"{name}/{look.link + 1}/{i}")
         self._shown: dict[int, Array] = {}
         self.move(client)
 
@@ -86,28 +84,30 @@ class TableView:
             self._robot.move(client)
 
 
-def _add_shape(server: viser.ViserServer, look: Look, name: str) -> Any:
-    """A node for a shape, fixed to its link's node."""
+def _add_shape(server: viser.ViserServer, look: Look, name: str) -> list[Any]:
+    """Nodes for a shape, fixed to its link's node."""
     x, y, z, w = look.link_from_shape.quaternion
     place: dict[str, Any] = {"wxyz": (w, x, y, z), "position": tuple(look.link_from_shape.position)}
-    red, green, blue = (round(255 * share) for share in look.colour[:3])
-    colour = (red, green, blue)
-    scene = server.scene
+    scene, colour = server.scene, _eight_bit(look.colour[:3])
     match look.kind:
         case "box":
             size = (look.size[0], look.size[1], look.size[2])
-            return scene.add_box(name, color=colour, dimensions=size, **place)
+            return [scene.add_box(name, color=colour, dimensions=size, **place)]
         case "sphere":
-            return scene.add_icosphere(name, radius=look.size[0], color=colour, **place)
+            return [scene.add_icosphere(name, radius=look.size[0], color=colour, **place)]
         case "cylinder":
             height, radius = look.size
-            return scene.add_cylinder(name, radius=radius, height=height, color=colour, **place)
+            return [scene.add_cylinder(name, radius=radius, height=height, color=colour, **place)]
         case "mesh":
-            mesh = _read_mesh(look.file).copy()
-            mesh.apply_scale(look.size)
-            return scene.add_mesh_trimesh(name, mesh, **place)
+            scale = np.array(look.size)
+            return [
+                scene.add_mesh_simple(
+                    f"{name}/{i}", scale * patch.vertices, patch.faces, color=_eight_bit(patch.colour), **place
+                )
+                for i, patch in enumerate(patches_of(look.file, look.colour[:3]))
+            ]
 
 
-@lru_cache(maxsize=64)
-def _read_mesh(file: Path) -> Any:
-    return trimesh.load(file, force="mesh")
+def _eight_bit(colour: Colour) -> tuple[int, int, int]:
+    red, green, blue = (round(255 * share) for share in colour)
+    return red, green, blue
