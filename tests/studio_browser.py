@@ -74,12 +74,20 @@ def studio_at_work(folder: Path, seed: int) -> Iterator[Studio]:
     assert not failures, failures
 
 
+FAST = 4.0  # times real time, where the arm moves by itself and nobody needs to watch
+
+
 class Person:
-    """Somebody who looks at the page and moves the mouse."""
+    """Somebody who looks at the page and moves the mouse.
+
+    Attributes:
+        hurried: Simulated time that passed in a hurry, of which real time is not asked [s].
+    """
 
     def __init__(self, browser: object, studio: Studio) -> None:
         self.studio = studio
         self.session = studio.session
+        self.hurried = 0.0
         # The browser's library is imported only where there is a browser, so its type is not named here.
         self.page = browser.new_page(viewport={"width": 900, "height": 480})  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
@@ -95,6 +103,23 @@ class Person:
     def wait_until(self, what: Callable[[], object], why: str, seconds: float = 60) -> None:
         """Wait until something holds."""
         wait_for(what, seconds, why, self.pause)
+
+    @contextmanager
+    def in_a_hurry(self) -> Iterator[None]:
+        """Let time pass faster for a while."""
+        clock = self.session.stage.clock
+        before, clock.pace = clock.simulated, FAST
+        try:
+            yield
+        finally:
+            clock.pace = 1.0
+            self.hurried += clock.simulated - before
+
+    def let_pass(self, seconds: float) -> None:
+        """Wait until so much simulated time has passed."""
+        clock = self.session.stage.clock
+        end = clock.simulated + seconds
+        self.wait_until(lambda: clock.simulated >= end, f"{seconds} s pass in the simulation")
 
     def wait_for_mode(self, mode: Mode) -> None:
         """Wait until the studio is in a mode."""
@@ -123,9 +148,10 @@ class Person:
     def drag_to(self, goal: Array, steps: int = 25, *, let_go: bool = True) -> None:
         """Drag the handle until the tool is over a place on the table [m], shape (2,)."""
         mouse, tool = self.page.mouse, self.tool()
+        self.wait_until(lambda: self._sees_handle_at(tool), "the page shows the tool where it is")
         place = self.pixel(tool)
         mouse.move(*place)
-        self.pause(0.1)
+        self._draw()
         mouse.down()
         way = np.array([*(goal - tool[:2]), 0.0])
         for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, steps)):
@@ -136,11 +162,23 @@ class Person:
             self._correct(goal, np.array(place))
             mouse.up()
 
+    def _sees_handle_at(self, tool: Array) -> bool:
+        """Whether the page's handle is at a place [m], so that the mouse meets it there."""
+        place = self.page.evaluate(
+            "() => window.__viserMutable.nodeRefFromName['/handle'].position.toArray()"
+        )
+        return bool(np.linalg.norm(np.array(place) - tool) < 0.005)
+
+    def _draw(self) -> None:
+        """Let the page draw once, and hear of the mouse."""
+        self.page.evaluate(
+            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )
+
     def _correct(self, goal: Array, place: Array) -> None:
         """Look where the tool has come to, and move the mouse by what is missing, as everybody does."""
-        for _ in range(8):
-            self.pause(0.8)
-            tool = self.tool()
+        for _ in range(12):
+            tool = self._at_rest()
             missing = np.array([*(goal - tool[:2]), 0.0])
             if np.linalg.norm(missing) < 0.008:
                 return
@@ -148,7 +186,16 @@ class Person:
             self.page.mouse.move(*place)
         raise AssertionError(f"the tool is at {self.tool()}, not at {goal}")
 
+    def _at_rest(self) -> Array:
+        """Where the tool is as soon as it rests [m]."""
+        place = self.tool()
+        while True:
+            self.let_pass(0.25)
+            before, place = place, self.tool()
+            if np.linalg.norm(place - before) < 0.002:
+                return place
+
     def at_height(self, height: float) -> None:
         """Wait until the tool is at a height [m] and rests."""
-        self.wait_until(lambda: abs(self.tool()[2] - height) < 0.006, f"the tool is at {height} m", 30)
-        self.pause(0.3)
+        self.wait_until(lambda: abs(self.tool()[2] - height) < 0.006, f"the tool is at {height} m")
+        self.let_pass(0.3)

@@ -1,6 +1,7 @@
-"""How old the pose is that the page shows: the handle's height in the picture, against the physics'."""
+"""How old the pose is that the page shows: where the handle is in every picture, against the physics."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from time import time
 from typing import Any
 
@@ -9,34 +10,34 @@ import numpy as np
 from cobot_lfd.app.studio.stage import Stage
 from cobot_lfd.arrays import Array
 
-# After every picture that the page has drawn: when, and the mean row of the pixels that the handle colours.
+# For every picture: when the page gave it to the graphics, when they had finished it (a fence tells), and
+# where the handle is in it.
 _WATCH = """
 () => {
-  const size = (canvas) => canvas.width * canvas.height;
-  const shown = [...document.querySelectorAll('canvas')].sort((a, b) => size(b) - size(a))[0];
-  const copy = document.createElement('canvas');
-  copy.width = shown.width / 2; copy.height = shown.height / 2;
-  const context = copy.getContext('2d', { willReadFrequently: true });
-  window.rows = [];
-  const look = () => {
-    const now = (performance.timeOrigin + performance.now()) / 1000;
-    context.drawImage(shown, 0, 0, copy.width, copy.height);
-    const pixels = context.getImageData(0, 0, copy.width, copy.height).data;
-    let sum = 0, count = 0;
-    for (let i = 0; i < pixels.length; i += 4) {
-      const blue = pixels[i + 2];
-      if (pixels[i] - blue < 50 || pixels[i + 1] - blue < 18) continue;
-      sum += Math.floor(i / 4 / copy.width);
-      count += 1;
-    }
-    if (count > 10) window.rows.push([now, sum / count]);
-    window.watching = requestAnimationFrame(look);
+  const { scene, canvas, nodeRefFromName } = window.__viserMutable;
+  const gl = canvas.getContext('webgl2') ?? canvas.querySelector('canvas').getContext('webgl2');
+  window.pictures = [];
+  const now = () => (performance.timeOrigin + performance.now()) / 1000;
+  scene.onAfterRender = () => {
+    const given = now();
+    const { x, y, z } = nodeRefFromName['/handle'].position;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = () => {
+      if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
+        setTimeout(look, 2);
+        return;
+      }
+      gl.deleteSync(fence);
+      window.pictures.push([given, now(), x, y, z]);
+    };
+    look();
   };
-  window.watching = requestAnimationFrame(look);
 }
 """
-_FEWEST = 8  # pictures, of which three at each end are of a tool at rest
-_STOP = "() => { cancelAnimationFrame(window.watching); return window.rows; }"
+_STOP = "() => { window.__viserMutable.scene.onAfterRender = () => {}; return window.pictures; }"
+_MOVES = 0.03  # [m/s]; of a slower tool, nobody can tell how old its pose is
+_SAME = 1e-6  # [m] between the pose in a picture and the one that was sent
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,59 +45,75 @@ class Ages:
     """Ages of the poses that were shown while the tool moved.
 
     Attributes:
-        median: [s]; not a number where the page drew too few pictures.
-        worst: [s].
-        n_pictures: In how many pictures the tool was on its way.
+        given: When the page gave their pictures to the graphics [s], shape (M,).
+        finished: When the graphics had finished them [s], shape (M,).
+        replaced: When the next ones were finished, until which they were to be seen [s], shape (M,).
     """
 
-    median: float
-    worst: float
-    n_pictures: int
+    given: Array
+    finished: Array
+    replaced: Array
+
+    def __str__(self) -> str:
+        """Medians and 95th percentiles in milliseconds."""
+        if not len(self.given):
+            return "of unknown age: no picture shows a moving tool"
+        moments = {
+            "when the page draws it": self.given,
+            "when the graphics have finished": self.finished,
+            "when the next one follows": self.replaced,
+        }
+        told = (
+            f"{1000 * np.median(ages):.0f} ms (95 %: {1000 * np.percentile(ages, 95):.0f}) {moment}"
+            for moment, ages in moments.items()
+        )
+        return f"{', '.join(told)}; {len(self.given)} pictures"
 
 
-class Heights:
-    """Notes when the tool was at which height, as often as the page is told."""
+class Places:
+    """Notes when the tool was where, as often as the page is told."""
 
     def __init__(self, stage: Stage) -> None:
-        self._notes: list[tuple[float, float]] = []
+        self._notes: list[tuple[float, ...]] = []
         audience: Any = stage.audience
         tell = audience.moved
 
         def moved(client: Any, stage: Stage) -> None:
-            self._notes.append((time(), float(stage.shown_tool[2])))
+            self._notes.append((time(), *stage.shown_tool.tolist()))
             tell(client, stage)
 
         audience.moved = moved
 
     @property
     def history(self) -> Array:
-        """Time [s] and height [m], shape (M, 2)."""
+        """Time [s] and place [m], shape (M, 4)."""
         return np.array(self._notes)
 
 
 def begin_watching(page: Any) -> None:
-    """Begin to look at what the page draws."""
+    """Begin to note what the page draws."""
     page.evaluate(_WATCH)
 
 
-def ages(page: Any, heights: Heights) -> Ages:
-    """What was seen since then, of a tool that went up or down once, and rested before and after.
+def end_watching(page: Any) -> Array:
+    """When each picture was given to the graphics and finished [s], where its handle is [m], shape (N, 5)."""
+    return np.array(page.evaluate(_STOP), dtype=np.float64).reshape(-1, 5)
 
-    The rows of the two rests tell which row belongs to which height; between them, every picture is matched
-    to the moment at which the tool was where the picture shows it.
+
+def ages(pictures: Array, history: Array) -> Ages:
+    """How old the pose in each picture was, of a tool on its way.
+
+    Args:
+        pictures: When each was given to the graphics and finished [s], its handle's place [m], shape (N, 5).
+        history: When the tool was where [s], [m], shape (M, 4).
     """
-    rows, history = np.array(page.evaluate(_STOP)), heights.history
-    if len(rows) < _FEWEST:
-        return Ages(np.nan, np.nan, len(rows))
-    first, last = np.median(rows[:3, 1]), np.median(rows[-3:, 1])
-    start, end = (float(np.interp(rows[i, 0], *history.T)) for i in (0, -1))
-    shown = start + (rows[:, 1] - first) / (last - first) * (end - start)
-    share = (shown - start) / (end - start)
-    moving = (share > 0.15) & (share < 0.85)
-    passed = (history[:, 1] - start) / (end - start)
-    inside = (history[:, 0] >= rows[0, 0]) & (passed > 0.02) & (passed < 0.98)
-    if not moving.any() or not inside.any():
-        return Ages(np.nan, np.nan, 0)
-    when = np.interp(share[moving], passed[inside], history[inside, 0])
-    age = rows[moving, 0] - when
-    return Ages(float(np.median(age)), float(age.max()), len(age))
+    speeds = np.linalg.norm(np.diff(history[:, 1:], axis=0), axis=1) / np.diff(history[:, 0])
+    moves = np.minimum(speeds[:-1], speeds[1:]) > _MOVES
+    on_its_way = history[1:-1][moves]
+    found = []
+    for (given, finished, *place), (_, following, *_) in pairwise(pictures):
+        away = np.abs(on_its_way[:, 1:] - place).max(axis=1)
+        [same] = np.nonzero((away < _SAME) & (on_its_way[:, 0] <= given))
+        if len(same):
+            found.append(np.array([given, finished, following]) - on_its_way[same[-1], 0])
+    return Ages(*np.array(found).reshape(-1, 3).T)

@@ -1,15 +1,7 @@
-"""Episodes on disk: nothing is lost, nothing is overwritten, damage is told."""
+"""Episodes in a folder: they come back as they were, are numbered, and nothing is overwritten."""
 
-import multiprocessing
-import os
-import resource
-import shutil
-import signal
 import tempfile
-import time
-from collections.abc import Iterator
 from dataclasses import fields, replace
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 import h5py
@@ -24,15 +16,12 @@ from cobot_lfd.app.demonstrations.store import (
     list_episodes,
     load_demonstrations,
     load_episode,
-    require_writable,
     save_episode,
 )
 from cobot_lfd.camera import Camera
 from cobot_lfd.errors import DataError
 from cobot_lfd.outcome import Outcome
 from tests.app_examples import episode
-
-FORK = multiprocessing.get_context("fork")
 
 
 def test_an_episode_comes_back_as_it_was(tmp_path: Path) -> None:
@@ -162,158 +151,3 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
 def test_a_missing_folder_is_told(tmp_path: Path) -> None:
     with pytest.raises(DataError, match=r"there is no folder .*nowhere; record demonstrations into it first"):
         list_episodes(tmp_path / "nowhere")
-
-
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match=r"cannot read .*episode_000000.h5: No such file or directory"):
-        load_episode(tmp_path / "episode_000000.h5")
-
-
-def test_every_damaged_bit_is_found(tmp_path: Path) -> None:
-    path = save_episode(tmp_path, episode())
-    whole = path.read_bytes()
-    rng = np.random.default_rng(0)
-    for place in [100, 511, 512, len(whole) - 1, *rng.integers(512, len(whole), 100)]:
-        damaged = bytearray(whole)
-        damaged[place] ^= 1 << int(rng.integers(8))
-        path.write_bytes(damaged)
-        with pytest.raises(DataError, match="is damaged: its contents do not match its checksum"):
-            load_episode(path)
-
-
-@pytest.mark.parametrize("length", [90, 512, 5000, -1])
-def test_a_file_that_was_cut_is_told(tmp_path: Path, length: int) -> None:
-    path = save_episode(tmp_path, episode())
-    path.write_bytes(path.read_bytes()[:length])
-    with pytest.raises(DataError, match="is damaged"):
-        load_episode(path)
-
-
-@pytest.mark.parametrize("contents", [b"", b"\x89HDF\r\n\x1a\n" + bytes(2000), b"half of something else"])
-def test_a_foreign_file_is_told(tmp_path: Path, contents: bytes) -> None:
-    path = tmp_path / "episode_000000.h5"
-    path.write_bytes(contents)
-    with pytest.raises(DataError, match="is no cobot-lfd episode file; move it to another folder"):
-        load_episode(path)
-
-
-def test_another_version_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "episode_000000.h5"
-    path.write_bytes(seal(b"from the future", title="cobot-lfd episode", version=3))
-    with pytest.raises(
-        DataError, match=r"has version 3 of the cobot-lfd episode format; .* reads version 1 and 2"
-    ):
-        load_episode(path)
-
-
-def test_a_sealed_file_that_holds_no_episode_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "episode_000000.h5"
-    path.write_bytes(seal(b"no HDF5", title="cobot-lfd episode", version=1))
-    with pytest.raises(DataError, match="holds no valid episode"):
-        load_episode(path)
-
-
-def test_a_full_disk_is_told_and_leaves_nothing_behind(tmp_path: Path) -> None:
-    kept = save_episode(tmp_path, episode())
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, hard))
-    try:
-        with pytest.raises(DataError, match=r"cannot save an episode in .*: File too large.*is safe"):
-            save_episode(tmp_path, episode())
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    assert {path.name for path in tmp_path.iterdir()} == {".lock", kept.name}
-    assert load_episode(kept).seed == 3
-
-
-@pytest.fixture
-def read_only_folder() -> Iterator[Path]:
-    folder = Path(tempfile.mkdtemp())
-    folder.chmod(0o555)
-    user = os.geteuid()
-    if user == 0:
-        os.seteuid(65534)  # root may write everywhere; an ordinary user may not
-    yield folder
-    os.seteuid(user)
-    shutil.rmtree(folder)
-
-
-def test_a_read_only_folder_is_told(read_only_folder: Path) -> None:
-    with pytest.raises(DataError, match=r"cannot save an episode in .*: Permission denied\. Choose a folder"):
-        save_episode(read_only_folder, episode())
-
-
-def test_a_read_only_folder_is_told_before_anything_is_recorded(read_only_folder: Path) -> None:
-    with pytest.raises(DataError, match=r"cannot save episodes in .*: Permission denied\. Choose a folder"):
-        require_writable(read_only_folder)
-
-
-def test_a_folder_that_can_be_written_is_left_empty(tmp_path: Path) -> None:
-    require_writable(tmp_path / "new" / "demos")
-    assert list((tmp_path / "new" / "demos").iterdir()) == []
-
-
-def test_a_file_in_place_of_the_folder_is_told(tmp_path: Path) -> None:
-    (tmp_path / "demos").write_text("not a folder")
-    with pytest.raises(DataError, match=r"cannot save an episode in .*demos: File exists"):
-        save_episode(tmp_path / "demos", episode())
-
-
-def _save_for_ever(folder: Path, kept: Connection) -> None:
-    for seed in range(10**6):
-        save_episode(folder, episode(seed))
-        kept.send(seed)
-
-
-def _save_some(folder: Path, first_seed: int) -> None:
-    for seed in range(first_seed, first_seed + 10):
-        save_episode(folder, episode(seed))
-
-
-def test_what_was_kept_survives_a_kill_at_any_moment(tmp_path: Path) -> None:
-    rng = np.random.default_rng(1)
-    for repetition in range(12):
-        folder = tmp_path / str(repetition)
-        receiver, sender = FORK.Pipe(duplex=False)
-        recorder = FORK.Process(target=_save_for_ever, args=(folder, sender))
-        recorder.start()
-        sender.close()
-        receiver.poll(10)  # the first one is on the disk
-        time.sleep(rng.uniform(0.0, 0.05))
-        os.kill(recorder.pid or 0, signal.SIGKILL)
-        recorder.join()
-        reported = _received(receiver)
-        assert [load_episode(path).seed for path in list_episodes(folder)][: len(reported)] == reported
-        assert load_episode(save_episode(folder, episode(77))).seed == 77
-        assert not list(folder.glob(".*.partial"))
-
-
-def _received(receiver: Connection) -> list[int]:
-    reported = []
-    try:
-        while receiver.poll():
-            reported.append(receiver.recv())
-    except EOFError:
-        pass
-    return reported
-
-
-def test_only_unfinished_episodes_are_tidied_up(tmp_path: Path) -> None:
-    for name in (".0123.episode.partial", ".0123.partial", "notes.txt"):
-        (tmp_path / name).write_bytes(b"half")
-    save_episode(tmp_path, episode())
-    assert {path.name for path in tmp_path.iterdir()} == {
-        ".lock",
-        ".0123.partial",
-        "notes.txt",
-        "episode_000000.h5",
-    }
-
-
-def test_two_recorders_at_once_lose_nothing(tmp_path: Path) -> None:
-    recorders = [FORK.Process(target=_save_some, args=(tmp_path, 10 * i)) for i in range(4)]
-    for recorder in recorders:
-        recorder.start()
-    for recorder in recorders:
-        recorder.join()
-    assert sorted(load_episode(path).seed for path in list_episodes(tmp_path)) == list(range(40))

@@ -98,28 +98,17 @@ def trash_episode(folder: Path, number: int) -> Path:
     Raises:
         DataError: If there is no such episode, or it cannot be moved.
     """
-    with told(folder, "write in"), folder_lock(folder):
-        (folder / TRASH).mkdir(exist_ok=True)
-        return _move(number, folder, folder / TRASH)
+    return _move(number, folder, folder / TRASH, lock=folder)
 
 
 def restore_episode(folder: Path, number: int) -> Path:
     """Put an episode back from a folder's trash, under the number that it had.
 
-    Args:
-        folder: Folder of episodes.
-        number: Number of the episode, as in its file name.
-
-    Returns:
-        The file in the folder.
-
-    Raises:
-        DataError: If there is no such episode in the trash, or it cannot be moved.
+    The arguments, the result and the error are those of ``trash_episode``, the other way round.
     """
     if not (folder / TRASH).is_dir():
         raise DataError(f"{folder} has no trash, so there is nothing to restore.")
-    with told(folder, "write in"), folder_lock(folder):
-        return _move(number, folder / TRASH, folder)
+    return _move(number, folder / TRASH, folder, lock=folder)
 
 
 def _look_at(path: Path) -> WholeFile | UnreadableFile:
@@ -129,16 +118,18 @@ def _look_at(path: Path) -> WholeFile | UnreadableFile:
         return UnreadableFile(path, str(error))
 
 
-def _move(number: int, source: Path, target: Path) -> Path:
-    """Move an episode; call it inside the folder's lock."""
-    by_number = {episode_number(path): path for path in list_episodes(source)}
-    if number not in by_number:
-        choices = ", ".join(map(str, by_number)) or "it holds none"
-        raise DataError(f"there is no episode {number} in {source}; choose one of: {choices}.")
-    old, new = by_number[number], target / by_number[number].name
-    if new.exists():
-        raise DataError(f"cannot move {old}: {new} is there already. Rename one of the two.")
-    os.rename(old, new)
-    sync_folder(target)
-    sync_folder(source)
-    return new
+def _move(number: int, source: Path, target: Path, *, lock: Path) -> Path:
+    """Move an episode between a folder and its trash, inside the folder's lock."""
+    with told(lock, "write in"), folder_lock(lock):
+        target.mkdir(exist_ok=True)
+        by_number = {episode_number(path): path for path in list_episodes(source)}
+        if number not in by_number:
+            choices = ", ".join(map(str, by_number)) or "it holds none"
+            raise DataError(f"there is no episode {number} in {source}; choose one of: {choices}.")
+        old, new = by_number[number], target / by_number[number].name
+        if new.exists():
+            raise DataError(f"cannot move {old}: {new} is there already. Rename one of the two.")
+        os.rename(old, new)
+        sync_folder(target)
+        sync_folder(source)
+        return new

@@ -13,7 +13,7 @@ class Clock:
 
     Attributes:
         simulated: Simulated time in all [s].
-        lost: Simulated time that was given up because the simulation was too slow, in all [s].
+        lost: Time that was given up in all because the simulation was too slow for real time [s].
         pace: Simulated time per real time that is aimed at; 1 is real time.
     """
 
@@ -39,7 +39,8 @@ class Clock:
         if ahead > _AHEAD:
             sleep(ahead)
         elif ahead < -_BEHIND:
-            self.lost -= ahead * self.pace
+            if self.pace <= 1.0:
+                self.lost -= ahead
             self._start -= ahead
         self._mark()
 

@@ -56,12 +56,12 @@ def patches_of(file: Path, colour: Colour) -> tuple[Patch, ...]:
 
 @lru_cache(maxsize=64)
 def _read(file: Path) -> tuple[Patch, ...]:
-    parts = trimesh.load_scene(file).dump()
+    parts: list[Any] = list(trimesh.load_scene(file).dump())
     alike = _sorted_by_colour(parts)
     n_triangles = sum(len(part.faces) for part in parts)
     patches = []
     for colour, meshes in alike.items():
-        mesh = trimesh.util.concatenate(meshes)
+        mesh: Any = trimesh.util.concatenate(meshes)
         mesh.merge_vertices()
         mesh = _lighter(mesh, round(_MOST_TRIANGLES * len(mesh.faces) / n_triangles))
         shaded = trimesh.graph.smooth_shade(mesh, angle=_ROUND)

@@ -23,7 +23,8 @@ class LocalServer(viser.ViserServer):
 
     def stop(self) -> None:
         """Stop serving, and close what viser leaves open."""
-        super().stop()
+        with redirect_stdout(io.StringIO()):  # nobody asked
+            super().stop()
         loop = self.get_event_loop()
         if not loop.is_running():
             loop.close()

@@ -99,12 +99,16 @@ def _add_shape(server: viser.ViserServer, look: Look, name: str) -> list[Any]:
             height, radius = look.size
             return [scene.add_cylinder(name, radius=radius, height=height, color=colour, **place)]
         case "mesh":
-            scale = np.array(look.size)
+            scale, patches = np.array(look.size), patches_of(look.file, look.colour[:3])
             return [
                 scene.add_mesh_simple(
-                    f"{name}/{i}", scale * patch.vertices, patch.faces, color=_eight_bit(patch.colour), **place
+                    f"{name}/{i}",
+                    vertices=scale * patch.vertices,
+                    faces=patch.faces,
+                    color=_eight_bit(patch.colour),
+                    **place,
                 )
-                for i, patch in enumerate(patches_of(look.file, look.colour[:3]))
+                for i, patch in enumerate(patches)
             ]
 
 
