@@ -24,16 +24,15 @@ def corners(points: Array) -> Array:
 
 @pytest.mark.parametrize("name", ["link5.obj", "hand.obj"])
 def test_few_triangles_have_the_shape_of_many(name: str) -> None:
-    """Points on the page's surface are at most some millimetres from the robot's, and the other way round."""
+    """Points on the page's surface lie on the robot's, and both reach equally far."""
     patches = patches_of(FRANKA / name, WHITE)
     light: Any = trimesh.util.concatenate([trimesh.Trimesh(patch.vertices, patch.faces) for patch in patches])
     whole = trimesh.load_mesh(FRANKA / name)
     assert len(light.faces) < 700 < len(whole.faces)
     ours, theirs = (trimesh.sample.sample_surface(mesh, 20_000, seed=0)[0] for mesh in (light, whole))
-    for one, other in ((ours, theirs), (theirs, ours)):
-        away, _ = cKDTree(one).query(other)
-        assert np.median(away) < 0.0015  # [m], of which sampling makes 1 mm
-        assert np.quantile(away, 0.99) < 0.005
+    away, _ = cKDTree(theirs).query(ours)
+    assert np.quantile(away, 0.99) < 0.005  # [m], of which the distance between samples is 1 mm
+    assert_allclose(corners(light.vertices), corners(np.asarray(whole.vertices)), atol=4e-3)  # [m]
 
 
 def test_every_large_material_keeps_its_colour() -> None:
