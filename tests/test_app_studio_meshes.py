@@ -28,11 +28,11 @@ def test_few_triangles_have_the_shape_of_many(name: str) -> None:
     patches = patches_of(FRANKA / name, WHITE)
     light: Any = trimesh.util.concatenate([trimesh.Trimesh(patch.vertices, patch.faces) for patch in patches])
     whole = trimesh.load_mesh(FRANKA / name)
-    assert len(light.faces) < 700 < len(whole.faces)
+    assert len(light.faces) < 800 < len(whole.faces)
     ours, theirs = (trimesh.sample.sample_surface(mesh, 20_000, seed=0)[0] for mesh in (light, whole))
     away, _ = cKDTree(theirs).query(ours)
-    assert np.quantile(away, 0.99) < 0.005  # [m], of which the distance between samples is 1 mm
-    assert_allclose(corners(light.vertices), corners(np.asarray(whole.vertices)), atol=4e-3)  # [m]
+    assert np.quantile(away, 0.95) < 0.003  # [m], of which the distance between samples is 1 mm
+    assert_allclose(corners(light.vertices), corners(np.asarray(whole.vertices)), atol=1e-3)  # [m]
 
 
 def test_every_large_material_keeps_its_colour() -> None:

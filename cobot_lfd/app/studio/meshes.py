@@ -15,7 +15,8 @@ import trimesh
 
 from cobot_lfd.arrays import Array
 
-_MOST_TRIANGLES = 600  # of a file; fewer show at the arm's outline
+_MOST_TRIANGLES = 700  # of a file; fewer show at the arm's outline
+_AGGRESSION = 3  # from 0 to 10; the default, 7, is off by centimetres in places
 _FEWEST_TRIANGLES = 40  # of a patch
 _SMALL = 0.04  # of a mesh's surface; a material that has less is left out: every patch costs the browser time
 _ROUND = np.deg2rad(40.0)  # between two triangles up to which their edge is shaded as if it were round
@@ -86,7 +87,9 @@ def _sorted_by_colour(parts: list[Any]) -> dict[Colour, list[Any]]:
 def _lighter(mesh: Any, n_triangles: int) -> Any:
     """The mesh with about so many triangles; one that has no more stays as it is."""
     most = max(n_triangles, _FEWEST_TRIANGLES)
-    return mesh if len(mesh.faces) <= most else mesh.simplify_quadric_decimation(face_count=most)
+    if len(mesh.faces) <= most:
+        return mesh
+    return mesh.simplify_quadric_decimation(face_count=most, aggression=_AGGRESSION)
 
 
 def _material(visual: Any) -> Colour:
