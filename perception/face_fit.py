@@ -18,12 +18,12 @@ from perception.rigid import on_plane
 
 _KERNEL = 9  # Reach of the last blur [px].
 _N_STEPS = 6  # At each blur, at the most.
-_SMALL_STEP = 0.01  # From which on no further step is taken [px].
+_SMALL_STEP = 0.003  # From which on no further step is taken [px].
 _TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
 _POSE = 3  # Unknowns: x, y, angle; then come the light's.
-_N_EVEN = (5, 6, 6)  # Unknowns at each blur where the light is even: blur is told from where it is small on.
+_N_EVEN = (4, 4, 6)  # Unknowns at each blur where the light is even; at first it is a factor only.
 _N_ALL = 8
 _FEWEST_PIXELS = 60
 _LEAST_INSIDE = 0.3  # Share of a face that must lie in the picture.
