@@ -97,8 +97,8 @@ def _level(appearance: Appearance, image: NDArray[Any], mask: NDArray[np.uint8],
     """The face's pixels at the i-th blur; only at the last one it is told how soft the picture is."""
     stride = _STRIDES[i]
     pixels = np.argwhere(mask[::stride, ::stride]) * stride
-    depth = np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE))[tuple(pixels.T)]
-    depth = np.full(len(pixels), np.inf) if i == 0 else np.asarray(depth, np.float64)
+    inwards = np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float64)
+    depth = np.full(len(pixels), np.inf) if i == 0 else inwards[tuple(pixels.T)]
     local = appearance.to_local(pixels[:, ::-1])
     rows, columns = pixels.T // _BLOCK
     return Level(
