@@ -18,6 +18,7 @@ from perception.silhouette import Contour, silhouette_hull, visible_contour
 # How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
 # start; near at last, so that shadows and other edges nearby do not disturb. A few points do until then.
 _REACHES, _LAST_REACH = (8.0, 4.0), 2.5
+_NEAR = 1.0  # If no part of the outline moved farther [px], the start was not rough.
 _COARSE_SPACING = 3.0  # Of those few points [px].
 _SMALLEST_REACH = 2.0
 _FEWEST_POINTS = 12
@@ -81,7 +82,10 @@ def fit_outline(
         seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), _COARSE_SPACING)
         if seen is None:
             return None
-        frame = _moved(frame, _robust_step(seen)[0])
+        step = _robust_step(seen)[0]
+        frame = _moved(frame, step)
+        if np.abs(seen.jacobian @ step).max() < _NEAR:
+            break
     seen = _measure(picture, camera, model, mixture, frame, min(_LAST_REACH, widest))
     return None if seen is None else _finish(seen)
 
@@ -130,11 +134,8 @@ def _moved(frame: Frame, step: Array) -> Frame:
 
 def _jacobian(contour: Contour, frame: Frame, camera: Camera) -> Array:
     """How far the outline moves outwards [px] by x [m], y [m] and angle [rad], shape (n, 3)."""
-    by_x, by_y = (
-        np.sum((camera.project(contour.points + _STEP * axis) - contour.pixels) * contour.normals, axis=1)
-        / _STEP
-        for axis in np.eye(3)[:2]
-    )
+    moved = camera.project(contour.points + _STEP * np.eye(3)[:2, None])
+    by_x, by_y = np.sum((moved - contour.pixels) * contour.normals, axis=2) / _STEP
     x, y = (contour.points[:, :2] - frame.position).T
     return np.column_stack([by_x, by_y, x * by_y - y * by_x])
 
