@@ -9,7 +9,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.edge_noise import stair_variance, weighted_normal_equations
+from perception.edge_noise import EdgeNoise, weighted_step
 from perception.edges import EdgeOffsets, measure_edges
 from perception.mixture import Mixture
 from perception.picture import Picture
@@ -114,13 +114,10 @@ def _finish(seen: _Measurement) -> OutlineFit:
     step, chosen = _robust_step(seen)
     jacobian, offsets = seen.jacobian[chosen], seen.edges.offsets[chosen]
     residual = float(np.sqrt(np.mean((offsets - jacobian @ step) ** 2)))
-    stairs = stair_variance(seen.edges.mixed[chosen])
-    information, pull = weighted_normal_equations(
-        seen.contour[chosen], jacobian, offsets, stairs=stairs, white=max(residual**2 - stairs, 0.0)
-    )
-    covariance = np.asarray(np.linalg.inv(information + _RIDGE), dtype=np.float64)
+    noise = EdgeNoise.seen_in(seen.edges.mixed[chosen], residual**2)
+    step, covariance = weighted_step(seen.contour[chosen], jacobian, offsets, noise, _RIDGE)
     return OutlineFit(
-        _moved(seen.frame, covariance @ pull),
+        _moved(seen.frame, step),
         covariance,
         found=float(chosen.mean()),
         empty=float(seen.edges.empty.mean()),

@@ -107,7 +107,7 @@ def _covers(pixels: Array, corners: Array) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=64)
 def _polygons(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float32]]:
-    """The sides of a prism's top, foot and walls: indices of their ends, and the polygon of each, (k, 2 + n)."""
+    """The sides of a prism's top, foot and walls: indices of their ends; the polygon of each, (k, 2 + n)."""
     after = np.roll(np.arange(n), -1)
     walls = np.column_stack([np.arange(n), after, n + after, n + np.arange(n)])
     starts = np.concatenate([np.arange(2 * n), walls.ravel()])
