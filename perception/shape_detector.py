@@ -114,12 +114,12 @@ def _try(
     most_empty: float = _MOST_EMPTY,
 ) -> OutlineFit | str:
     """The best fit to a region, or why there is none; that something is covered is tried last."""
-    if not region.right_colour:
-        return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
     here = Frame(camera.to_plane(region.centroid, model.z), 0.0)
     expected = cv2.contourArea(silhouette_hull(model, here, camera).astype(np.float32))
     if not _LEAST_AREA * expected < region.area < _MOST_AREA * expected:
         return f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
+    if not region.right_colour:
+        return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
     mixture = Mixture.of(region.colour, segmentation.table, segmentation.noise)
     fault = ""
     for covered in (False, True):
