@@ -9,7 +9,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.edge_noise import EdgeNoise, weighted_step
+from perception.edge_noise import stair_variance, weighted_normal_equations
 from perception.edges import EdgeOffsets, measure_edges
 from perception.mixture import Mixture
 from perception.picture import Picture
@@ -18,8 +18,8 @@ from perception.silhouette import Contour, silhouette_hull, visible_contour
 # How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
 # start; near at last, so that shadows and other edges nearby do not disturb. A few points do until then.
 _REACHES, _LAST_REACH = (8.0, 4.0), 2.5
-_NEAR = 1.0  # If no part of the outline moved farther [px], the start was not rough.
-_COARSE_SPACING = 3.0  # Of those few points [px].
+_COARSE_SPACING = 3.0  # Of those few points [px], or this part of a small object's width:
+_COARSE_PART = 0.12
 _SMALLEST_REACH = 2.0
 _FEWEST_POINTS = 12
 _LEAST_WEIGHT = 0.2  # Of an edge, by Tukey's biweight, so that it counts as part of the outline.
@@ -77,15 +77,13 @@ def fit_outline(
     """
     width = float(np.ptp(silhouette_hull(model, start, camera), axis=0).min())
     widest = max(0.3 * width, _SMALLEST_REACH)
+    coarse = min(_COARSE_PART * width, _COARSE_SPACING)
     frame = start
     for reach in _REACHES:
-        seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), _COARSE_SPACING)
+        seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), coarse)
         if seen is None:
             return None
-        step = _robust_step(seen)[0]
-        frame = _moved(frame, step)
-        if np.abs(seen.jacobian @ step).max() < _NEAR:
-            break
+        frame = _moved(frame, _robust_step(seen)[0])
     seen = _measure(picture, camera, model, mixture, frame, min(_LAST_REACH, widest))
     return None if seen is None else _finish(seen)
 
@@ -114,10 +112,13 @@ def _finish(seen: _Measurement) -> OutlineFit:
     step, chosen = _robust_step(seen)
     jacobian, offsets = seen.jacobian[chosen], seen.edges.offsets[chosen]
     residual = float(np.sqrt(np.mean((offsets - jacobian @ step) ** 2)))
-    noise = EdgeNoise.seen_in(seen.edges.mixed[chosen], residual**2)
-    step, covariance = weighted_step(seen.contour[chosen], jacobian, offsets, noise, _RIDGE)
+    stairs = stair_variance(seen.edges.mixed[chosen])
+    information, pull = weighted_normal_equations(
+        seen.contour[chosen], jacobian, offsets, stairs=stairs, white=max(residual**2 - stairs, 0.0)
+    )
+    covariance = np.asarray(np.linalg.inv(information + _RIDGE), dtype=np.float64)
     return OutlineFit(
-        _moved(seen.frame, step),
+        _moved(seen.frame, covariance @ pull),
         covariance,
         found=float(chosen.mean()),
         empty=float(seen.edges.empty.mean()),
@@ -131,8 +132,11 @@ def _moved(frame: Frame, step: Array) -> Frame:
 
 def _jacobian(contour: Contour, frame: Frame, camera: Camera) -> Array:
     """How far the outline moves outwards [px] by x [m], y [m] and angle [rad], shape (n, 3)."""
-    moved = camera.project(contour.points + _STEP * np.eye(3)[:2, None])
-    by_x, by_y = np.sum((moved - contour.pixels) * contour.normals, axis=2) / _STEP
+    by_x, by_y = (
+        np.sum((camera.project(contour.points + _STEP * axis) - contour.pixels) * contour.normals, axis=1)
+        / _STEP
+        for axis in np.eye(3)[:2]
+    )
     x, y = (contour.points[:, :2] - frame.position).T
     return np.column_stack([by_x, by_y, x * by_y - y * by_x])
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cobot_lfd.app.episode import Bench, run_episode
+from cobot_lfd.app.perceive import perceive
 from cobot_lfd.app.recording.script import HAND_STREAM, write_script
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.learning.model import TaskParameterisedGMM
@@ -11,7 +12,7 @@ from cobot_lfd.outcome import Outcome
 from cobot_lfd.pose import Pose
 from cobot_lfd.tool import ToolTurn
 from robots import Kinematics, has_urdf, load_robot
-from scenes import SceneDescription, draw_placements, load_scene, scene_names
+from scenes import SceneDescription, World, draw_placements, load_scene, scene_names, variant_names
 
 pytestmark = pytest.mark.simulator
 
@@ -60,3 +61,13 @@ def test_a_scene_is_performed(scene_name: str, robot_name: str) -> None:
         run = run_episode(Bench(scene_name, robot_name, scene, robot, kinematics, model), SEED)
     assert run.result.verdict.outcome is Outcome.SUCCESS, run.result.verdict.sentence
     assert run.result.metrics["tracking_error"] < 0.002  # [m]
+
+
+@pytest.mark.parametrize("scene_name", [f"{s}@{v}" for s in scene_names() for v in variant_names()])
+def test_all_that_a_task_needs_is_seen_in_its_variants(scene_name: str) -> None:
+    with World(load_scene(scene_name), SEED) as world:
+        view = perceive(world)
+        truth = world.true_frames()
+    assert not [seen.reason for seen in view.missing]
+    for seen in view.detections:
+        assert np.linalg.norm(seen.frame.position - truth[seen.name].position) < 0.001
