@@ -5,8 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from cobot_lfd.app.detour import detours
 from cobot_lfd.app.plan import Stage, Surroundings, plan_motion
 from cobot_lfd.frame import Frame
+from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from cobot_lfd.tool import ToolTurn
@@ -61,3 +63,16 @@ def test_a_wall_across_the_way_is_told(kinematics: Kinematics) -> None:
     wall = Obstacle("wall", pose, np.zeros((1, 3)), np.array([[0.2, 0.01, 0.2]]))
     with pytest.raises(CollisionError, match="the arm or its part would hit the wall"):
         plan_motion(kinematics, PANDA, SCENE.task, PATH, [STRAIGHT], around(wall))
+
+
+def test_a_block_on_the_way_is_passed_by_a_detour(kinematics: Kinematics) -> None:
+    block = Obstacle(
+        "block", Pose(np.array([0.5, -0.03, 0.02]), np.eye(3)), np.zeros((1, 3)), np.full((1, 3), 0.02)
+    )
+    free = GeneratedPath(PATH, np.tile(1e-4 * np.eye(2), (len(PATH), 1, 1)), np.linspace(0, 1, len(PATH)))
+    over = plan_motion(kinematics, PANDA, SCENE.task, PATH, [STRAIGHT], around(block))
+    np.testing.assert_allclose(heights(kinematics, over), SCENE.task.travel_height, atol=1e-3)
+    beside = plan_motion(
+        kinematics, PANDA, SCENE.task, PATH, [STRAIGHT], around(block), detours=detours(free, [block])
+    )
+    np.testing.assert_allclose(heights(kinematics, beside), SCENE.task.carry_height, atol=1e-3)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cobot_lfd.app.compliance import Compliance, StiffnessField
+from cobot_lfd.app.detour import detours
 from cobot_lfd.app.execute import Observer, execute
 from cobot_lfd.app.geometry import farthest_from
 from cobot_lfd.app.perceive import View, perceive
@@ -22,6 +23,7 @@ from cobot_lfd.frame import Frame
 from cobot_lfd.learning.path import GeneratedPath
 from cobot_lfd.method import PathModel
 from cobot_lfd.motion import TimingMethod
+from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.outcome import Outcome, Verdict
 from cobot_lfd.tool import ToolTurn
 from robots import Arm, CollisionError, JointLimitError, Kinematics, NotConvergedError, RobotDescription
@@ -156,22 +158,33 @@ def _attempt(
     with notes.timed("plan"):
         turns, around = _turns(bench, view), _surroundings(bench, view)
         stages = plan_motion(
-            bench.kinematics, bench.robot, bench.scene.task, path, turns, around, timing=bench.timing
+            bench.kinematics,
+            bench.robot,
+            bench.scene.task,
+            path,
+            turns,
+            around,
+            detours=detours(notes.path, _aside(bench, view)),
+            timing=bench.timing,
         )
+        carry = next(stage.trajectory for stage in stages if stage.name == "carry")
+        planned = carry.positions(np.linspace(0.0, carry.duration, len(path)))
+        way = bench.kinematics.tool_positions(planned)[:, :2]
+    notes.metrics["detour"] = farthest_from(path, way)
     notes.duration = sum(stage.trajectory.duration for stage in stages)
     notes.metrics["path_length"] = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     if notes.duration > _TIME_LIMIT:
         detail = f"the motion would take {notes.duration:.0f} s; {_TIME_LIMIT:.0f} s are allowed"
         raise _EpisodeFailedError(Verdict(Outcome.TIMEOUT, detail))
     with notes.timed("execute"):
-        return _carry_out(world, arm, stages, path, notes, observer, bench.compliance)
+        return _carry_out(world, arm, stages, way, notes, observer, bench.compliance)
 
 
 def _carry_out(
     world: World,
     arm: Arm,
     stages: tuple[Stage, ...],
-    path: Array,
+    way: Array,
     notes: _Notes,
     observer: Observer | None,
     compliance: Compliance | None,
@@ -180,7 +193,7 @@ def _carry_out(
     soft = StiffnessField(compliance, generated) if compliance and generated else None
     execution = execute(world, arm, stages, observer=observer, stiffness=soft)
     if len(execution.carried):
-        notes.metrics["tracking_error"] = farthest_from(path, execution.carried)
+        notes.metrics["tracking_error"] = farthest_from(way, execution.carried)
     return execution.failure or check_success(world, (arm.body.id,))
 
 
@@ -217,6 +230,11 @@ def _surroundings(bench: Bench, view: View) -> Surroundings:
     around = obstacles(scene, {name: frame for name, frame in frames.items() if name != pick})
     part = object_obstacle(scene, pick, frames[pick]) if scene.task.grips else None
     return Surroundings(around, part)
+
+
+def _aside(bench: Bench, view: View) -> list[Obstacle]:
+    """What has nothing to do with the task, so that a path may be bent around it."""
+    return [object_obstacle(bench.scene, item.name, item.frame) for item in view.others]
 
 
 def _require_on_table(scene: SceneDescription, path: Array) -> None:

@@ -1,10 +1,11 @@
 """A planar path to the whole motion: approach, grasp, lift, carry, lower, release, retreat, return."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from cobot_lfd.app.choices import Choice, choices
 from cobot_lfd.app.geometry import densify, farthest_from
 from cobot_lfd.arrays import Array
 from cobot_lfd.errors import MotionError
@@ -23,7 +24,6 @@ _MOST_DEVIATION = 0.001  # [m] by which the planned tool may leave the generated
 _N_DEVIATIONS = 60  # places along the carry at which that is checked
 _CHECK_EVERY = 3  # poses of a line between two that are checked for collisions
 _N_FREE = 25  # postures of a free movement that are checked for collisions
-_MOST_ATTEMPTS = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,12 +64,14 @@ def plan_motion(
     turns: Sequence[ToolTurn],
     surroundings: Surroundings | None = None,
     *,
+    detours: Iterable[Array] = (),
     timing: TimingMethod = "simple",
 ) -> tuple[Stage, ...]:
     """The motion that carries a part along a path.
 
     Where the first choice cannot be carried out, the others are tried: another turn of the tool, another
-    branch of the inverse kinematics, and at last a carry lifted to the height at which the tool travels.
+    branch of the inverse kinematics, the detours, and at last a carry lifted to the height at which the tool
+    travels.
 
     Args:
         kinematics: Of the robot.
@@ -78,6 +80,7 @@ def plan_motion(
         path: Where the tool carries the part [m], shape (T, 2).
         turns: How the tool may be turned, the best first.
         surroundings: What the arm must not hit; by default nothing is looked at.
+        detours: Other paths from the same start to the same end, the best first; asked for where needed.
         timing: How straight and planar parts get their times; free movements always get them simply.
 
     Returns:
@@ -90,39 +93,18 @@ def plan_motion(
     """
     surroundings = surroundings or Surroundings()
     first: KinematicsError | None = None
-    for chosen, turn, posture in _choices(robot, task, turns):
+    for choice in choices(robot, task, path, turns, detours):
         with kinematics.collisions(surroundings.obstacles) as check:
             try:
-                lines = _lines(kinematics, check, chosen, path, turn, posture, surroundings.part)
-                stages = _stages(robot, chosen, lines, timing)
+                lines = _lines(kinematics, check, choice, surroundings.part)
+                stages = _stages(robot, choice.task, lines, timing)
                 _require_free(check, stages[0].trajectory, stages[-1].trajectory)
             except KinematicsError as error:
                 first = first or error
                 continue
-        _require_near(kinematics, path, next(s for s in stages if s.name == "carry").trajectory)
+        _require_near(kinematics, choice.path, next(s for s in stages if s.name == "carry").trajectory)
         return stages
     raise first or MotionError("the task leaves no way to turn the tool; give it one.")
-
-
-def _choices(
-    robot: RobotDescription, task: Task, turns: Sequence[ToolTurn]
-) -> Iterator[tuple[Task, ToolTurn, Array]]:
-    """Task, turn and posture to start from, in the order in which they are tried."""
-    postures = [np.array(posture) for posture in (robot.home, *robot.branches)]
-    choices = [(task, turn, postures[0]) for turn in turns]
-    choices += [(task, turns[0], posture) for posture in postures[1:]] if turns else []
-    lifted = _lifted(task)
-    limit = _MOST_ATTEMPTS if lifted is None else _MOST_ATTEMPTS - 2
-    yield from choices[:limit]
-    if lifted is not None:
-        yield from ((lifted, turn, postures[0]) for turn in turns[:2])
-
-
-def _lifted(task: Task) -> Task | None:
-    """The task with its carry lifted; None where that would be the same, or something else is pushed."""
-    if not task.grips or task.travel_height <= task.carry_height:
-        return None
-    return task.model_copy(update={"carry_height": task.travel_height})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,16 +118,9 @@ class _Lines:
     leave: Array
 
 
-def _lines(
-    kinematics: Kinematics,
-    check: CollisionCheck,
-    task: Task,
-    path: Array,
-    turn: ToolTurn,
-    posture: Array,
-    part: Obstacle | None,
-) -> _Lines:
+def _lines(kinematics: Kinematics, check: CollisionCheck, choice: Choice, part: Obstacle | None) -> _Lines:
     """Inverse kinematics and collision checks, part by part; what is impossible fails early."""
+    task, path, turn, posture = choice
     start, goal = path[0], path[-1]
 
     def line(joints: Array, height: float, next_height: float, point: Array, yaw: float) -> Array:
