@@ -1,65 +1,134 @@
 """How far measured edges may be off, and how the errors of neighbouring points hang together.
 
-A picture whose pixels are sampled at points has stairs along its edges: the edge appears up to half a pixel
-off, ever more along a stair, then it jumps back. A stair as long as the edge does not average out. With the
-phase of the stairs unknown, the error is a sawtooth of period P, whose autocorrelation over a distance d is
-``s² (1 - 6 u (1 - u))`` with ``u = d / P mod 1`` and ``s² = 1/12`` px² (the second Bernoulli polynomial). A
-pixel that averages over its area has no such stairs, and shows it by mixed colours on the edge.
+A picture whose pixels are sampled at points has stairs along its edges, and a stair as long as the edge does
+not average out. Sampling repeats the spectrum of the scene at all points K of the reciprocal grid (whole
+numbers). The spectrum of an edge with normal n lies on a line along n, where it falls as 1 / (2 pi |s|); what
+is repeated around K disturbs an edge's place, measured by adding up across it, as a wave along the edge of
+frequency K.t (t along the edge) and variance ``1 / (2 pi^2 (K.n)^2)``, less what interpolation and blur take.
+For an edge along the grid that is the familiar sawtooth, of variance 1/12 px^2; edges near 45 degrees have
+long waves, too. With unknown phases the errors at two points a distance d apart have the covariance
+``sum over K of variance(K) cos(2 pi K.t d)``. A pixel that averages over its area has no such stairs, and
+shows it by mixed colours on the edge.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
-from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from perception.silhouette import Contour
 
 _MIXED_WITHOUT_STAIRS = 2 / 3  # Mean of 4 a (1 - a) over an edge, where the covered share a is evenly spread.
-_LEAST_NOISE = 0.04  # What light, rounding and the lens leave at the least [px].
-_NOT_SAWTOOTH = 0.5  # Variance of the stairs that does not follow the sawtooth, as a share of it.
+_MIXED_BY_BLUR = 0.1  # Excess of that mean from which on a blur hides what the renderer did.
+_LEAST_NOISE = 0.03  # What light, rounding and the lens leave at the least [px].
 _SPREAD = 3.0  # Number of points over which one pixel's noise is spread.
+_REACH = 12  # Of the reciprocal grid; beyond, waves are weak.
+_FEW = 1.7  # Stairs along an edge.
+_TURN = 0.6  # Waves along an edge that turn it most.
+_SHORTEST = 2.0  # Waves shorter than that [px] count as noise,
+_SHORT_WAVES = 0.006  # of this variance [px²]: so much is missing in the sum, and hangs together less.
+_ALL_WAVES = 0.05  # Variance of short and long ones together [px²]; 0.045 to 0.083, by simulation.
+_WEAKEST = 2e-4  # Variance below which a wave does not count [px²].
+_GRID = np.array([(i, j) for i in range(_REACH + 1) for j in range(-_REACH, _REACH + 1) if (i, j) > (0, 0)])
+"""Half of the reciprocal grid's points, shape (k, 2); the others are their opposites."""
 
 
-def stair_variance(mixed: Array) -> float:
-    """Variance of an edge's place due to stairs [px²], from the covered shares of the pixels on the edge.
+@dataclass(frozen=True, slots=True)
+class EdgeNoise:
+    """What makes edges in a picture uncertain.
 
-    Where a pixel averages n points across the edge, the mean of ``4 a (1 - a)`` is ``2/3 (1 - 1/n²)``, and
-    the variance is ``1/12 / n²``.
-
-    Args:
-        mixed: Share of the object in the pixel nearest to each point of the contour, shape (n,).
+    Attributes:
+        stairs: How much of the stairs of a picture sampled at points they have [0..1].
+        variance: Of their distances from the outline [px²].
+        bias: How far light and shadow may displace an edge as a whole [px].
     """
-    mixing = float(np.mean(4 * np.clip(mixed, 0.0, 1.0) * (1 - np.clip(mixed, 0.0, 1.0))))
-    return max(0.0, 1.0 - mixing / _MIXED_WITHOUT_STAIRS) / 12
+
+    stairs: float
+    variance: float
+    bias: float
+
+    @classmethod
+    def seen_in(cls, mixed: Array, variance: float, bias: float) -> "EdgeNoise":
+        """From how the pixels on the edges look.
+
+        Where a pixel averages n points across the edge, the mean of ``4 a (1 - a)`` is ``2/3 (1 - 1/n²)``,
+        and the stairs' variance is 1/n² of that of one point. A blurred edge mixes more than that; since a
+        blur that comes after sampling leaves the long stairs and nothing shows them, they are then taken to
+        be there.
+
+        Args:
+            mixed: Share a of the object in the pixel nearest to each point of the contour, shape (n,).
+            variance: Of the edges' distances from the outline [px²].
+            bias: How far light and shadow may displace an edge as a whole [px].
+        """
+        mixing = float(np.mean(4 * np.clip(mixed, 0.0, 1.0) * (1 - np.clip(mixed, 0.0, 1.0))))
+        blurred = float(np.clip((mixing - _MIXED_WITHOUT_STAIRS) / _MIXED_BY_BLUR, 0.0, 1.0))
+        return cls(max(blurred, 1.0 - mixing / _MIXED_WITHOUT_STAIRS), variance, bias)
 
 
-def weighted_normal_equations(
-    contour: Contour, jacobian: Array, offsets: Array, stairs: float, white: float
+def weighted_step(
+    contour: Contour, jacobian: Array, offsets: Array, noise: EdgeNoise, ridge: Array
 ) -> tuple[Array, Array]:
-    """Least squares that knows how errors hang together: ``J' R^-1 J`` and ``J' R^-1 r``.
+    """Least squares that knows how errors hang together: the unknowns, shape (m,), and their covariance.
+
+    With weights W from errors as they would be if their waves were known, the step is ``A r`` with
+    ``A = (J' W J)^-1 J' W``; errors of covariance R then make it uncertain by ``A R A'``.
 
     Args:
         contour: Where the edges were measured, n points.
         jacobian: How they depend on the unknowns, shape (n, m).
         offsets: What was measured [px], shape (n,).
-        stairs: Variance due to stairs [px²].
-        white: Variance due to all else [px²].
+        noise: What makes the edges uncertain.
+        ridge: What is known of the unknowns before, as information, shape (m, m).
     """
-    information, pull = np.zeros((jacobian.shape[1],) * 2), np.zeros(jacobian.shape[1])
+    information, spread, pull = ridge.copy(), np.zeros_like(ridge), np.zeros(len(ridge))
     for edge in np.unique(contour.edges):
         mine = contour.edges == edge
-        R = _covariance(contour, mine, stairs, white)
-        solved = np.linalg.solve(R, np.column_stack([jacobian[mine], offsets[mine]]))
-        information += jacobian[mine].T @ solved[:, :-1]
-        pull += jacobian[mine].T @ solved[:, -1]
-    return information, pull
+        R, turned = _covariance(contour.pixels[mine], contour.normals[mine][0], noise)
+        weighted = np.linalg.solve(R, jacobian[mine])
+        information += weighted.T @ jacobian[mine]
+        spread += weighted.T @ turned @ weighted
+        pull += weighted.T @ offsets[mine]
+    inverse = np.linalg.inv(information)
+    return inverse @ pull, np.asarray(inverse @ (spread + ridge) @ inverse, np.float64)
 
 
-def _covariance(contour: Contour, mine: NDArray[np.bool_], stairs: float, white: float) -> Array:
-    """Covariance of the errors along one edge [px²], shape (k, k)."""
-    pixels = contour.pixels[mine]
-    across, along = np.sort(np.abs(contour.normals[mine][0]))
+def _covariance(pixels: Array, normal: Array, noise: EdgeNoise) -> tuple[Array, Array]:
+    """Covariance of the errors along one edge [px²], shape (k, k), and what it is where stairs are few.
+
+    Few stairs on an edge tell neither their length nor, therefore, its direction: half of what they may do
+    is to displace it as a whole, half is to turn it.
+    """
+    variances, frequencies = stair_waves(normal)
+    variances = noise.stairs * variances
     distance = np.linalg.norm(pixels - pixels[0], axis=1)
-    u = np.mod(np.abs(distance[:, None] - distance) * across, 1.0)
-    sawtooth = stairs * along**2 * (1 - 6 * u * (1 - u))
-    rest = _SPREAD * white + _NOT_SAWTOOTH * stairs + _LEAST_NOISE**2
-    return np.asarray(sawtooth + rest * np.eye(len(pixels)))
+    length = float(distance.max()) + 1.0
+    rest = max(noise.variance - noise.stairs * _ALL_WAVES, 0.0)
+    white = (_SPREAD * rest + noise.stairs * _SHORT_WAVES + _LEAST_NOISE**2) * np.eye(len(pixels))
+    few = np.abs(frequencies) * length < _FEW
+    turning = np.full(few.sum(), _TURN / length)
+    shared = np.append(np.where(few, 0.5, 1.0) * variances, 0.5 * variances[few])
+    R = _of_waves(distance, variances, frequencies) + noise.bias**2 + white
+    turned = _of_waves(distance, shared, np.append(frequencies, turning)) + noise.bias**2 + white
+    return R, turned
+
+
+def _of_waves(distance: Array, variances: Array, frequencies: Array) -> Array:
+    """Covariance of waves of unknown phase at places along an edge [px²], shape (k, k)."""
+    phases = 2 * np.pi * distance[:, None] * frequencies
+    waves = np.hstack([np.cos(phases), np.sin(phases)]) * np.sqrt(np.tile(variances, 2))
+    return np.asarray(waves @ waves.T, np.float64)
+
+
+def stair_waves(normal: Array) -> tuple[Array, Array]:
+    """The waves by which point sampling displaces an edge: variances [px²] and frequencies [1/px], (k,) each.
+
+    Args:
+        normal: Unit vector in the picture at right angles to the edge, shape (2,).
+    """
+    along = np.array([-normal[1], normal[0]])
+    across, frequencies = np.abs(_GRID @ normal), _GRID @ along
+    interpolated = np.prod(np.sinc(frequencies[:, None] * along), axis=1) ** 4
+    variances = interpolated / (2 * np.pi**2 * np.maximum(across, 0.1) ** 2)
+    long = (np.abs(frequencies) * _SHORTEST < 1.0) & (variances > _WEAKEST)
+    return variances[long], frequencies[long]

@@ -11,6 +11,7 @@ from perception.picture import Picture
 from perception.silhouette import Contour
 
 _STEP = 0.5  # Distance of the samples across an edge [px].
+_FAR_REACH = 3.0  # Reach from which on twice that will do [px]: a rough place is looked for.
 _FAR = 0.6  # Share of the reach from where on a sample is well inside or well outside.
 _LEAST_LIGHT = (
     0.15  # Of object or table, compared with their typical brightness: darker, it is something else.
@@ -48,21 +49,24 @@ def measure_edges(picture: Picture, mixture: Mixture, contour: Contour, reach: f
         contour: Where the edge is expected.
         reach: How far to look to either side [px].
     """
-    across = np.arange(-reach + _STEP / 2, reach, _STEP)
+    step = _STEP if reach < _FAR_REACH else 2 * _STEP
+    across = np.arange(-reach + step / 2, reach, step)
     image = mixture.near(picture, contour.pixels, reach + _BEYOND[-1])
-    columns, rows = _across(contour, across)
-    thing, table, _ = image.between_pixels(columns, rows)
+    columns, rows = _across(contour, np.concatenate([across, reach + _BEYOND]))
+    shares = image.between_pixels(columns, rows)
+    columns, rows = columns[:, : len(across)], rows[:, : len(across)]
+    thing, table, _ = shares[..., : len(across)]
     inside, outside = across < -_FAR * reach, across > _FAR * reach
     light = np.maximum(table[:, outside].mean(axis=1), _LEAST_LIGHT)
     covered = np.clip(1.0 - table / light[:, None], -0.5, 1.5)
     within, without = covered[:, inside].mean(axis=1), covered[:, outside].mean(axis=1)
-    beyond = image.between_pixels(*_across(contour, reach + _BEYOND)).mean(axis=2)
+    beyond = shares[..., len(across) :].mean(axis=2)
     on_table = mixture.foreign(*beyond) < _MOST_FOREIGN + _blur(mixture.foreign_noise, len(_BEYOND))
     slack = 1.0 - _LEAST_COVERED + _blur(mixture.table_noise, int(inside.sum()))
     table_outside = on_table & (light > _LEAST_LIGHT) & (np.abs(without) < slack)
     object_inside = (thing[:, inside].mean(axis=1) > _LEAST_LIGHT) & (within > 1.0 - slack)
     return EdgeOffsets(
-        offsets=covered.sum(axis=1) * _STEP - reach,
+        offsets=covered.sum(axis=1) * step - reach,
         mixed=1.0 - image.at_pixels(contour.pixels)[1] / light,
         valid=table_outside & object_inside & image.holds(columns, rows),
         empty=table_outside & (np.abs(within) < 1.0 - _LEAST_COVERED),

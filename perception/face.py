@@ -33,7 +33,8 @@ class Look:
             is added, the square of a further blur (half of the second derivatives' sum, since blur is
             diffusion), and how much the factor grows along the frame's axes.
         undisturbed: Whether they are so far inside the outline that what surrounds the face, which may be
-            in light or shadow, does not shine into them, shape (n,).
+            in light or shadow, does not shine into them, shape (n,). At the first blur all count: until
+            the pose is nearly right, surroundings help.
     """
 
     brightness: Array
@@ -82,10 +83,7 @@ class Face:
         mask = np.zeros(image.shape, np.uint8)
         cv2.fillPoly(mask, [np.rint(appearance.to_pixels(appearance.outline)).astype(np.int32)], 1)
         mask = np.asarray(cv2.erode(mask, np.ones((3, 3), np.uint8), borderValue=0), np.uint8)
-        levels = tuple(
-            _level(appearance, image, mask, blur, stride)
-            for blur, stride in zip(BLURS, _STRIDES, strict=True)
-        )
+        levels = tuple(_level(appearance, image, mask, i) for i in range(len(BLURS)))
         radius = _RADIUS * float(np.linalg.norm(np.ptp(appearance.outline, axis=0)))
         return cls(levels, appearance.z, radius, appearance.metres_per_pixel)
 
@@ -95,39 +93,38 @@ class Face:
         return _LEAST_ERROR * self.metres_per_pixel / np.array([1.0, 1.0, self.radius])
 
 
-def _level(
-    appearance: Appearance, image: NDArray[Any], mask: NDArray[np.uint8], blur: float, stride: int
-) -> Level:
-    rows, columns = (stride * indices for indices in np.nonzero(mask[::stride, ::stride]))
-    depth = np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE))
-    local = appearance.to_local(np.column_stack([columns, rows]))
+def _level(appearance: Appearance, image: NDArray[Any], mask: NDArray[np.uint8], i: int) -> Level:
+    """The face's pixels at the i-th blur; only at the last one it is told how soft the picture is."""
+    stride = _STRIDES[i]
+    pixels = np.argwhere(mask[::stride, ::stride]) * stride
+    inwards = np.asarray(cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float64)
+    depth = np.full(len(pixels), np.inf) if i == 0 else inwards[tuple(pixels.T)]
+    local = appearance.to_local(pixels[:, ::-1])
+    rows, columns = pixels.T // _BLOCK
     return Level(
         local=local,
         across=local / np.abs(local).max(),
-        blocks=(rows // _BLOCK) * (image.shape[1] // _BLOCK + 1) + columns // _BLOCK,
+        blocks=rows * (image.shape[1] // _BLOCK + 1) + columns,
         looks=tuple(
-            _look(appearance, image, depth, rows, columns, float(np.hypot(blur, softer))) for softer in SOFTER
+            _look(image, appearance.metres_per_pixel, pixels, local, depth, float(np.hypot(BLURS[i], softer)))
+            for softer in (SOFTER if i == len(BLURS) - 1 else SOFTER[:1])
         ),
     )
 
 
 def _look(
-    appearance: Appearance,
-    image: NDArray[Any],
-    depth: NDArray[Any],
-    rows: NDArray[Any],
-    columns: NDArray[Any],
-    blur: float,
+    image: NDArray[Any], scale: float, pixels: NDArray[Any], local: Array, depth: Array, blur: float
 ) -> Look:
-    across = appearance.to_local(np.column_stack([columns, rows]))
-    across /= np.abs(across).max()
+    rows, columns = pixels.T
     smooth = np.asarray(cv2.GaussianBlur(image, (0, 0), blur), np.float64)
     down, right = (np.gradient(smooth, axis=axis)[rows, columns] for axis in (0, 1))
     bright = smooth[rows, columns]
     diffusion = 0.5 * np.asarray(cv2.Laplacian(smooth, cv2.CV_64F))[rows, columns]
     return Look(
         brightness=bright,
-        gradients=np.column_stack([right, -down]) / appearance.metres_per_pixel,
-        shades=np.column_stack([bright, np.ones(len(bright)), diffusion, bright[:, None] * across]),
-        undisturbed=depth[rows, columns] > _DISTURBED * blur,
+        gradients=np.column_stack([right, -down]) / scale,
+        shades=np.column_stack(
+            [bright, np.ones(len(bright)), diffusion, bright[:, None] * local / np.abs(local).max()]
+        ),
+        undisturbed=depth >= min(_DISTURBED * blur, float(np.median(depth))),  # Of a narrow face half.
     )

@@ -18,15 +18,15 @@ from perception.rigid import on_plane
 
 _KERNEL = 9  # Reach of the last blur [px].
 _N_STEPS = 6  # At each blur, at the most.
-_SMALL_STEP = 0.01  # From which on no further step is taken [px].
+_SMALL_STEP = 0.003  # From which on no further step is taken [px].
 _TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
 _POSE = 3  # Unknowns: x, y, angle; then come the light's.
-_N_EVEN = (5, 6, 6)  # Unknowns at each blur where the light is even: blur is told from where it is small on.
+_N_EVEN = (4, 4, 6)  # Unknowns at each blur where the light is even; at first it is a factor only.
 _N_ALL = 8
 _FEWEST_PIXELS = 60
-_LEAST_INSIDE = 0.3  # Share of a face that must lie in the picture.
+_LEAST_INSIDE = 0.3  # Share of a face's pixels that must lie in the picture.
 _RIDGE = 1e-3 * np.eye(_N_ALL)  # Keeps what no pixel tells anything about where it is.
 _DARK = 20.0  # Brightness below which a ratio tells little [0..255].
 _LEAST_CONTRAST = 0.2  # Of the picture, compared with the face; below, it shows something else.
@@ -167,12 +167,10 @@ def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
 
 def _first(picture: BlurredPicture, face: Face, start: Frame) -> _State:
     """The start in a light that seems right, an even factor."""
-    level = face.levels[0]
-    seen, inside = _seen(picture, 0, level, face.z, start)
-    if inside.mean() < _LEAST_INSIDE:
-        raise _OutOfViewError
-    ratios = seen[inside] / np.maximum(level.looks[0].brightness[inside], _DARK)
-    return _State(start, np.array([float(np.median(ratios)), 0.0, 0.0, 0.0, 0.0]))
+    state = _State(start, np.array([1.0, 0.0, 0.0, 0.0, 0.0]))
+    seen, usable = _seen(picture, face, state, 0)
+    ratios = seen[usable] / np.maximum(state.expected(face.levels[0])[usable], _DARK)
+    return replace(state, light=state.light * float(np.median(ratios)))
 
 
 def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: int) -> _State:
@@ -180,14 +178,10 @@ def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: i
     level = face.levels[i]
     small = _SMALL_STEP * BLURS[i] / BLURS[-1] * face.metres_per_pixel
     for _ in range(_N_STEPS):
-        seen, inside = _seen(picture, i, level, face.z, state.frame)
-        if inside.mean() < _LEAST_INSIDE:
-            raise _OutOfViewError
+        seen, usable = _seen(picture, face, state, i)
         errors = seen - state.expected(level)
         jacobian = state.jacobian(level, free)
-        if i > 0:
-            inside &= level.looks[state.lens].undisturbed
-        weighted = jacobian * _weights(errors, inside)[:, None]
+        weighted = jacobian * _weights(errors, usable)[:, None]
         information = weighted.T @ jacobian + _RIDGE[:free, :free]
         step: Array = -np.asarray(np.linalg.solve(information, weighted.T @ errors), np.float64)
         moved = state.moved(step)
@@ -197,23 +191,24 @@ def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: i
     return state
 
 
-def _seen(
-    picture: BlurredPicture, i: int, level: Level, z: float, frame: Frame
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Brightness of the picture where a face's pixels land, and whether they land in it, shape (n,) each."""
-    camera = picture.camera
-    x, y = camera.project(on_plane(frame.apply(level.local), z)).astype(np.float32).T
+def _seen(picture: BlurredPicture, face: Face, state: _State, i: int) -> tuple[Array, NDArray[np.bool_]]:
+    """Brightness of the picture at its i-th blur where a face's pixels land, and which count, (n,) each."""
+    camera, level = picture.camera, face.levels[i]
+    x, y = camera.project(on_plane(state.frame.apply(level.local), face.z)).astype(np.float32).T
     sampled = cv2.remap(
         picture.levels[i], x[:, None], y[:, None], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
     )
-    inside = (x >= 0) & (y >= 0) & (x <= camera.width - 1) & (y <= camera.height - 1)
-    return np.asarray(sampled, np.float64).ravel(), inside
+    undisturbed = level.looks[state.lens].undisturbed
+    usable = (x >= 0) & (y >= 0) & (x <= camera.width - 1) & (y <= camera.height - 1) & undisturbed
+    if usable.sum() < max(_LEAST_INSIDE * undisturbed.sum(), 1):
+        raise _OutOfViewError
+    return np.asarray(sampled, np.float64).ravel(), usable
 
 
-def _weights(errors: Array, inside: NDArray[np.bool_]) -> Array:
-    """Tukey's biweight, shape (n,); 0 for what is not in the picture."""
-    scale = max(1.4826 * float(np.median(np.abs(errors[inside]))), _LEAST_NOISE)
-    return np.where(inside, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
+def _weights(errors: Array, usable: NDArray[np.bool_]) -> Array:
+    """Tukey's biweight, shape (n,); 0 for what does not count."""
+    scale = max(1.4826 * float(np.median(np.abs(errors[usable]))), _LEAST_NOISE)
+    return np.where(usable, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
 
 
 def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> FaceFit:
@@ -223,11 +218,10 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     as they are, also where those of neighbouring pixels hang together.
     """
     level = face.levels[-1]
-    seen, inside = _seen(picture, len(BLURS) - 1, level, face.z, state.frame)
+    seen, usable = _seen(picture, face, state, len(BLURS) - 1)
     expected = state.expected(level)
     errors = seen - expected
-    inside &= level.looks[state.lens].undisturbed
-    weights = _weights(errors, inside)
+    weights = _weights(errors, usable)
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
         raise _OutOfViewError

@@ -42,11 +42,21 @@ class Keypoints:
 
 
 def find_keypoints(
-    grey: NDArray[np.uint8], kind: FeatureKind, parts: Iterable[tuple[slice, slice]] | None = None
+    grey: NDArray[np.uint8],
+    kind: FeatureKind,
+    parts: Iterable[tuple[slice, slice]] | None = None,
+    closer: float = 1.0,
 ) -> Keypoints:
-    """The points of a grey picture, or of parts of it, given by their rows and columns."""
+    """The points of a grey picture.
+
+    Args:
+        grey: The picture.
+        kind: What describes the points.
+        parts: Rows and columns of parts of it to which to keep; by default all of it.
+        closer: How many times larger to see it; more points are found, and that takes longer.
+    """
     whole = (slice(0, grey.shape[0]), slice(0, grey.shape[1]))
-    found = [_find_in(grey, part, kind) for part in ([whole] if parts is None else parts)]
+    found = [_find_in(grey, part, kind, closer) for part in ([whole] if parts is None else parts)]
     some = [each for each in found if len(each.places)]
     if not some:
         return Keypoints(np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 1), np.float32))
@@ -57,9 +67,11 @@ def find_keypoints(
     )
 
 
-def _find_in(grey: NDArray[np.uint8], part: tuple[slice, slice], kind: FeatureKind) -> Keypoints:
+def _find_in(
+    grey: NDArray[np.uint8], part: tuple[slice, slice], kind: FeatureKind, closer: float
+) -> Keypoints:
     rows, columns = part
-    magnified = _MAGNIFIED[kind]
+    magnified = _MAGNIFIED[kind] * closer
     large = cv2.resize(grey[rows, columns], None, fx=magnified, fy=magnified, interpolation=cv2.INTER_CUBIC)
     finder: Any = cv2.SIFT.create(**_SIFT) if kind == "sift" else cv2.ORB.create(**_ORB)
     points, descriptors = finder.detectAndCompute(large, None)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cobot_lfd.arrays import Array
 from perception.picture import Picture
 
+_COLOURS_OFF = 1.0  # Of a face or a shadow as a whole [0..255].
 _SHADE = 0.3  # Standard deviation of p + q from 1, by shadows and the shade of faces.
 
 
@@ -55,6 +56,16 @@ class Mixture:
     def table_noise(self) -> float:
         """Standard deviation of the share q of the table in a pixel."""
         return self.noise * float(np.linalg.norm(self.weights[1, :3]))
+
+    @property
+    def table_error(self) -> float:
+        """Standard deviation of the share q over all of a face or a shadow, whose colours are a little off.
+
+        It is the uncertainty of q, given that the colours are off by one of 255 and ``p + q`` from 1 by the
+        shade: small where object and table differ in colour, large where they do so only in brightness.
+        """
+        pair = self.colours[:, :2]
+        return float(np.linalg.inv(pair.T @ pair / _COLOURS_OFF**2 + np.eye(2) / _SHADE**2)[1, 1] ** 0.5)
 
     @property
     def foreign_noise(self) -> float:

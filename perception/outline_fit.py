@@ -9,7 +9,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.edge_noise import stair_variance, weighted_normal_equations
+from perception.edge_noise import EdgeNoise, weighted_step
 from perception.edges import EdgeOffsets, measure_edges
 from perception.mixture import Mixture
 from perception.picture import Picture
@@ -18,6 +18,7 @@ from perception.silhouette import Contour, silhouette_hull, visible_contour
 # How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
 # start; near at last, so that shadows and other edges nearby do not disturb. A few points do until then.
 _REACHES, _LAST_REACH = (8.0, 4.0), 2.5
+_NEAR = 1.0  # If no part of the outline moved farther [px], the start was not rough.
 _COARSE_SPACING = 3.0  # Of those few points [px], or this part of a small object's width:
 _COARSE_PART = 0.12
 _SMALLEST_REACH = 2.0
@@ -83,9 +84,12 @@ def fit_outline(
         seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), coarse)
         if seen is None:
             return None
-        frame = _moved(frame, _robust_step(seen)[0])
+        step = _robust_step(seen)[0]
+        frame = _moved(frame, step)
+        if np.abs(seen.jacobian @ step).max() < _NEAR:
+            break
     seen = _measure(picture, camera, model, mixture, frame, min(_LAST_REACH, widest))
-    return None if seen is None else _finish(seen)
+    return None if seen is None else _finish(seen, bias=mixture.table_error * _LAST_REACH)
 
 
 def _measure(
@@ -107,18 +111,21 @@ def _measure(
     return _Measurement(frame, contour, _jacobian(contour, frame, camera), edges)
 
 
-def _finish(seen: _Measurement) -> OutlineFit:
-    """The last step: the edges that belong to the outline, weighted by their noise."""
+def _finish(seen: _Measurement, bias: float) -> OutlineFit:
+    """The last step: the edges that belong to the outline, weighted by their noise.
+
+    Args:
+        seen: The edges.
+        bias: How far light and shadow may displace an edge as a whole [px]: an edge's place is the sum of the
+            shares of the object across it, so they are off by an error of the share times the way.
+    """
     step, chosen = _robust_step(seen)
     jacobian, offsets = seen.jacobian[chosen], seen.edges.offsets[chosen]
     residual = float(np.sqrt(np.mean((offsets - jacobian @ step) ** 2)))
-    stairs = stair_variance(seen.edges.mixed[chosen])
-    information, pull = weighted_normal_equations(
-        seen.contour[chosen], jacobian, offsets, stairs=stairs, white=max(residual**2 - stairs, 0.0)
-    )
-    covariance = np.asarray(np.linalg.inv(information + _RIDGE), dtype=np.float64)
+    noise = EdgeNoise.seen_in(seen.edges.mixed[chosen], residual**2, bias)
+    step, covariance = weighted_step(seen.contour[chosen], jacobian, offsets, noise, _RIDGE)
     return OutlineFit(
-        _moved(seen.frame, covariance @ pull),
+        _moved(seen.frame, step),
         covariance,
         found=float(chosen.mean()),
         empty=float(seen.edges.empty.mean()),
@@ -132,11 +139,8 @@ def _moved(frame: Frame, step: Array) -> Frame:
 
 def _jacobian(contour: Contour, frame: Frame, camera: Camera) -> Array:
     """How far the outline moves outwards [px] by x [m], y [m] and angle [rad], shape (n, 3)."""
-    by_x, by_y = (
-        np.sum((camera.project(contour.points + _STEP * axis) - contour.pixels) * contour.normals, axis=1)
-        / _STEP
-        for axis in np.eye(3)[:2]
-    )
+    moved = camera.project(contour.points + _STEP * np.eye(3)[:2, None])
+    by_x, by_y = np.sum((moved - contour.pixels) * contour.normals, axis=2) / _STEP
     x, y = (contour.points[:, :2] - frame.position).T
     return np.column_stack([by_x, by_y, x * by_y - y * by_x])
 

@@ -190,12 +190,14 @@ def _label_pale(
         labels[rest[better]] = i
 
 
-def _unlikeness(colour: Array, look: _Look, table: Array) -> float:
-    """How far a colour is from the expected one, compared with how far that is from the table's."""
+def _unlikeness(colours: Array, look: _Look, table: Array) -> Array:
+    """How far colours are from the expected one, compared with how far that is from the table's, (n,)."""
     origin, goal = chromaticity(table), chromaticity(np.array(look.colour))
     if look.brightness is None or np.linalg.norm(goal - origin) >= _PALE:
-        return float(np.linalg.norm(chromaticity(colour) - goal) / np.linalg.norm(goal - origin))
-    return float(np.linalg.norm(colour - look.colour) / np.linalg.norm(table - look.colour))
+        colours = chromaticity(colours)
+    else:
+        origin, goal = table, np.array(look.colour)
+    return np.asarray(np.linalg.norm(colours - goal, axis=-1) / np.linalg.norm(goal - origin))
 
 
 def _regions(
@@ -204,12 +206,15 @@ def _regions(
     """The connected parts of a mask, the largest first, those of another colour last."""
     count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
     parts = np.asarray(labels)
-    found = []
-    for i in range(1, count):
-        if stats[i, cv2.CC_STAT_AREA] < _SMALLEST:
-            continue
-        region = _region(parts, i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
-        found.append(replace(region, unlikeness=_unlikeness(region.colour, look, table)))
+    found = [
+        _region(parts, i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
+        for i in range(1, count)
+        if stats[i, cv2.CC_STAT_AREA] >= _SMALLEST
+    ]
+    if not found:
+        return ()
+    unlike = _unlikeness(np.array([region.colour for region in found]), look, table)
+    found = [replace(region, unlikeness=float(off)) for region, off in zip(found, unlike, strict=True)]
     return tuple(sorted(found, key=lambda region: (not region.right_colour, -region.area)))
 
 

@@ -114,17 +114,16 @@ def _try(
     most_empty: float = _MOST_EMPTY,
 ) -> OutlineFit | str:
     """The best fit to a region, or why there is none; that something is covered is tried last."""
+    here = Frame(camera.to_plane(region.centroid, model.z), 0.0)
+    expected = cv2.contourArea(silhouette_hull(model, here, camera).astype(np.float32))
+    if not _LEAST_AREA * expected < region.area < _MOST_AREA * expected:
+        return f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
+    if not region.right_colour:
+        return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
     mixture = Mixture.of(region.colour, segmentation.table, segmentation.noise)
     fault = ""
     for covered in (False, True):
         starts = guess_poses(region, model, camera, segmentation.scale, covered=covered)
-        expected = cv2.contourArea(silhouette_hull(model, starts[0], camera).astype(np.float32))
-        if not _LEAST_AREA * expected < region.area < _MOST_AREA * expected:
-            return (
-                f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
-            )
-        if not region.right_colour:
-            return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
         best = _best_fit(picture, camera, model, mixture, starts)
         fault = _fault(model, camera, region, segmentation.scale, best, most_empty)
         if best is not None and not fault:
@@ -176,7 +175,8 @@ def _fault(
 def _sticks_out(region: Region, hull: Array) -> float:
     """How far a region reaches beyond a convex hull [px]."""
     polygon = hull.astype(np.float32)
-    return max(-cv2.pointPolygonTest(polygon, (float(u), float(v)), measureDist=True) for u, v in region.hull)
+    corners = region.hull.tolist()
+    return max(-cv2.pointPolygonTest(polygon, (u, v), measureDist=True) for u, v in corners)
 
 
 def _detection(model: ObjectModel, camera: Camera, fit: OutlineFit) -> Detection:

@@ -1,6 +1,7 @@
 """Where the outline of an object lands in the picture: its top, its foot and the walls between."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -66,12 +67,14 @@ def visible_contour(model: ObjectModel, frame: Frame, camera: Camera, spacing: f
     normals = np.column_stack([directions[:, 1], -directions[:, 0]])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     chord = seen[starts] + shares * directions  # A lens bends the edge; what is inside is judged without.
-    left, right = (_covers(chord + side * _ASIDE * normals, seen) for side in (1, -1))
+    sides = np.concatenate([chord + _ASIDE * normals, chord - _ASIDE * normals])
+    left, right = _covers(sides, seen).reshape(2, -1)
     points = corners[starts] + shares * (corners[ends] - corners[starts])
     outwards = np.where(left[:, None], -normals, normals)
     return Contour(points, camera.project(points), outwards, edges)[left != right]
 
 
+@lru_cache(maxsize=64)
 def _edges(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     """Indices of the ends of a prism's edges: around the top, around the foot, from top to foot."""
     around, after = np.arange(n), np.roll(np.arange(n), -1)
@@ -93,15 +96,21 @@ def _covers(pixels: Array, corners: Array) -> NDArray[np.bool_]:
     A place is covered by a polygon if the line from it to the right crosses the polygon's edges an odd number
     of times. The polygons are the top, the foot and the walls.
     """
-    n = len(corners) // 2
+    starts, ends, belongs = _polygons(len(corners) // 2)
+    (x0, y0), (x1, y1) = corners[starts].T, corners[ends].T
+    x, y = pixels.T[..., None]
+    slope = (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
+    crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
+    n_crossed = crosses.astype(np.float32) @ belongs
+    return np.asarray((n_crossed % 2 == 1).any(axis=1))
+
+
+@lru_cache(maxsize=64)
+def _polygons(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float32]]:
+    """The sides of a prism's top, foot and walls: indices of their ends; the polygon of each, (k, 2 + n)."""
     after = np.roll(np.arange(n), -1)
     walls = np.column_stack([np.arange(n), after, n + after, n + np.arange(n)])
     starts = np.concatenate([np.arange(2 * n), walls.ravel()])
     ends = np.concatenate([after, n + after, np.roll(walls, -1, axis=1).ravel()])
     polygon = np.concatenate([np.repeat([0, 1], n), np.repeat(np.arange(2, 2 + n), 4)])
-    (x0, y0), (x1, y1) = corners[starts].T, corners[ends].T
-    x, y = pixels.T[..., None]
-    slope = (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
-    crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
-    n_crossed = crosses.astype(np.float64) @ np.eye(2 + n)[polygon]
-    return np.asarray((n_crossed % 2 == 1).any(axis=1))
+    return starts, ends, np.eye(2 + n, dtype=np.float32)[polygon]
