@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cobot_lfd.app.pictures.draw import (
+    DETOUR_COLOUR,
     OUTLINE_COLOUR,
     PATH_COLOUR,
     X_COLOUR,
@@ -66,6 +67,14 @@ def test_the_path_is_drawn_where_the_camera_would_see_it() -> None:
     path = np.linspace([0.45, -0.1], [0.55, 0.1], 30)
     drawn = draw_detections(GREY, CAMERA, [], path=path, path_z=0.1)
     assert all(is_near(drawn, pixel, PATH_COLOUR) for pixel in in_picture(path, 0.1))
+
+
+def test_a_detour_is_drawn_beside_the_path_that_it_leaves() -> None:
+    path = np.linspace([0.45, -0.1], [0.55, 0.1], 30)
+    beside = path + np.array([0.04, 0.0])
+    drawn = draw_detections(GREY, CAMERA, [], path=path, detour=beside, path_z=0.1)
+    assert all(is_near(drawn, pixel, PATH_COLOUR) for pixel in in_picture(path, 0.1))
+    assert all(is_near(drawn, pixel, DETOUR_COLOUR) for pixel in in_picture(beside, 0.1))
 
 
 def test_a_path_from_an_object_starts_where_its_frame_is_drawn() -> None:

@@ -29,6 +29,7 @@ from cobot_lfd.tool import ToolTurn
 from robots import Arm, CollisionError, JointLimitError, Kinematics, NotConvergedError, RobotDescription
 from scenes import SceneDescription, World, check_success, could_be_seen, object_obstacle, obstacles
 
+_LEAST_DETOUR = 0.002  # [m] between path and way; what is less is no detour
 _TIME_LIMIT = 60.0  # [s] of the arm's motion, after which a person would have stopped it
 
 _FAILURES: dict[type[Exception], Outcome] = {
@@ -80,12 +81,14 @@ class EpisodeRun:
         result: What happened.
         view: What the camera saw.
         path: The path that was generated; None where it did not come to that.
+        detour: The way round something that was planned instead [m], shape (T, 2); None for no such way.
         true_frames: Where the objects stood; only for those who judge the episode.
     """
 
     result: EpisodeResult
     view: View
     path: GeneratedPath | None
+    detour: Array | None
     true_frames: Mapping[str, Frame]
 
 
@@ -104,6 +107,7 @@ class _Notes:
     times: dict[str, float] = field(default_factory=dict)
     metrics: dict[str, float] = field(default_factory=dict)
     path: GeneratedPath | None = None
+    detour: Array | None = None
     duration: float | None = None
 
     @contextmanager
@@ -143,7 +147,7 @@ def run_episode(bench: Bench, seed: int, *, film: Callable[[World], Observer] | 
         except tuple(_FAILURES) as error:
             verdict = Verdict(_FAILURES[type(error)], str(error))
     result = _result(bench, seed, verdict, view, true_frames, notes)
-    return EpisodeRun(result, view, notes.path, true_frames)
+    return EpisodeRun(result, view, notes.path, notes.detour, true_frames)
 
 
 def _attempt(
@@ -171,6 +175,7 @@ def _attempt(
         planned = carry.positions(np.linspace(0.0, carry.duration, len(path)))
         way = bench.kinematics.tool_positions(planned)[:, :2]
     notes.metrics["detour"] = farthest_from(path, way)
+    notes.detour = way if notes.metrics["detour"] > _LEAST_DETOUR else None
     notes.duration = sum(stage.trajectory.duration for stage in stages)
     notes.metrics["path_length"] = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
     if notes.duration > _TIME_LIMIT:

@@ -132,7 +132,8 @@ def episode(
     def run(seed: int = 1000, *, covered: bool = False) -> TestedEpisode:
         bench = bench_for(Job(scene, robot, model_file, covered))
         done = run_episode(bench, seed)
-        picture = save_picture(drawn_view(bench.scene, done.view, done.path), tmp_path / f"seed_{seed}.png")
+        drawn = drawn_view(bench.scene, done.view, done.path, detour=done.detour)
+        picture = save_picture(drawn, tmp_path / f"seed_{seed}.png")
         command = f"cobot-lfd run {model_file} --scene {scene} --robot {robot} --seed {seed}"
         tested = TestedEpisode(done.result, picture, command + (" --covered" if covered else ""))
         request.node.stash.setdefault(_EPISODES, []).append(tested)

@@ -31,7 +31,8 @@ def replay(
     episode = run_episode(bench, one.seed)
     print(f"{one.contender.label}, seed {one.seed}: {episode.result.verdict.sentence}")
     if picture:
-        print(f"  {save_picture(drawn_view(bench.scene, episode.view, episode.path), picture)}")
+        drawn = drawn_view(bench.scene, episode.view, episode.path, detour=episode.detour)
+        print(f"  {save_picture(drawn, picture)}")
     if video:
         write_file(video, film(one))
         print(f"  {video}")

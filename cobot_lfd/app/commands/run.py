@@ -74,7 +74,8 @@ def _illustrate(
     files = []
     path = episode.path
     if picture:
-        files.append(save_picture(drawn_view(bench.scene, episode.view, path), picture))
+        drawn = drawn_view(bench.scene, episode.view, path, detour=episode.detour)
+        files.append(save_picture(drawn, picture))
     if plot and path is not None:
         demonstrations = demonstrations_of(bench.model, load_kept(demos)) if demos else []
         found = episode.view.find_for(bench.model)

@@ -134,4 +134,4 @@ def _measures(bench: Bench, run: EpisodeRun) -> dict[str, float]:
 
 
 def _picture(bench: Bench, run: EpisodeRun) -> bytes:
-    return encode_small(drawn_view(bench.scene, run.view, run.path), width=_PICTURE_WIDTH)
+    return encode_small(drawn_view(bench.scene, run.view, run.path, detour=run.detour), width=_PICTURE_WIDTH)

@@ -18,7 +18,7 @@ Colour = tuple[int, int, int]
 
 WHITE, DARK = (255, 255, 255), (20, 20, 20)
 X_COLOUR, Y_COLOUR = (255, 140, 60), (110, 235, 180)  # orange and green that colour-blind eyes tell apart
-OUTLINE_COLOUR, PATH_COLOUR = (240, 228, 66), (86, 180, 233)
+OUTLINE_COLOUR, PATH_COLOUR, DETOUR_COLOUR = (240, 228, 66), (86, 180, 233), (255, 150, 220)
 
 ELLIPSE_COLOUR = (255, 255, 255)
 
@@ -34,6 +34,7 @@ def draw_detections(
     *,
     models: Iterable[ObjectModel] = (),
     path: ArrayLike | None = None,
+    detour: ArrayLike | None = None,
     path_z: float | None = None,
     scale: int = 2,
     judged: bool = False,
@@ -48,7 +49,8 @@ def draw_detections(
             found, so that one sees how well it fits, and its axes at the height of that outline. One without
             gets the contour that was seen, and its axes on the table.
         path: A planar path to be drawn too [m], shape (T, 2); None for no path.
-        path_z: Height at which the path is drawn [m]; None for that of the highest outline, so that path and
+        detour: A way that was gone instead of the path [m], shape (T, 2); None for no such way.
+        path_z: Height at which both are drawn [m]; None for that of the highest outline, so that path and
             frames are seen in one plane, or for the table where there are no models.
         scale: How many times the picture is enlarged, so that thin lines and small text stay legible.
         judged: Whether to draw also how sure each place is, as an ellipse, and to write each confidence.
@@ -58,9 +60,12 @@ def draw_detections(
     """
     by_name = {model.name: model for model in models}
     canvas = _Canvas(picture, camera, scale)
-    if path is not None:
-        highest = max((model.z for model in by_name.values()), default=0.0)
-        canvas.path(np.asarray(path, dtype=np.float64), highest if path_z is None else path_z)
+    highest = max((model.z for model in by_name.values()), default=0.0)
+    for way, colour in ((path, PATH_COLOUR), (detour, DETOUR_COLOUR)):
+        if way is not None:
+            canvas.path(np.asarray(way, dtype=np.float64), highest if path_z is None else path_z, colour)
+    if detour is not None:
+        canvas.note("blue: the path as learnt; pink: the way round what stands there")
     detections = tuple(detections)
     extents = [_draw_shape(canvas, detection, by_name.get(detection.name)) for detection in detections]
     for detection, extent in zip(detections, extents, strict=True):
@@ -165,13 +170,13 @@ class _Canvas:
     def polygon(self, pixels: Array, colour: Colour) -> None:
         self._lines(pixels, colour, closed=True)
 
-    def path(self, points: Array, z: float) -> None:
+    def path(self, points: Array, z: float, colour: Colour) -> None:
         pixels = self.project(points, z)
-        self._lines(pixels, PATH_COLOUR, closed=False)
+        self._lines(pixels, colour, closed=False)
         centre = self._fixed(pixels[0])
-        for radius, colour in ((5, DARK), (4, PATH_COLOUR)):
+        for radius, filling in ((5, DARK), (4, colour)):
             fixed_radius = (radius * self._scale // 2) << _SUBPIXEL_BITS
-            cv2.circle(self.picture, centre, fixed_radius, colour, -1, cv2.LINE_AA, _SUBPIXEL_BITS)
+            cv2.circle(self.picture, centre, fixed_radius, filling, -1, cv2.LINE_AA, _SUBPIXEL_BITS)
 
     def arrow(self, start: Array, tip: Array, name: str, colour: Colour) -> None:
         along = (tip - start) / np.linalg.norm(tip - start)

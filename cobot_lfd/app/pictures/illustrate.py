@@ -1,7 +1,7 @@
 """What the camera saw of a scene, with what was found in it and the path that was generated."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from cobot_lfd.app.perceive import View
 from cobot_lfd.app.pictures.draw import draw_detections
@@ -11,7 +11,12 @@ from scenes import SceneDescription, object_models
 
 
 def drawn_view(
-    scene: SceneDescription, view: View, path: GeneratedPath | None, *, scale: int = 2
+    scene: SceneDescription,
+    view: View,
+    path: GeneratedPath | None,
+    *,
+    detour: ArrayLike | None = None,
+    scale: int = 2,
 ) -> NDArray[np.uint8]:
     """The camera's picture with frames and path, ``scale`` times as large.
 
@@ -19,6 +24,7 @@ def drawn_view(
         scene: The scene.
         view: What was seen of it; where a model recognises its frames by itself, these are drawn.
         path: The path that was generated; None where it did not come to that.
+        detour: The way that was planned instead [m], shape (T, 2); None for no such way.
         scale: Magnification.
     """
     models = object_models(scene)
@@ -29,6 +35,7 @@ def drawn_view(
         learnt or view.detections,
         models=models,
         path=None if path is None else path.mean,
+        detour=detour,
         path_z=next(model.z for model in models if model.name == scene.task.pick),
         scale=scale,
     )
