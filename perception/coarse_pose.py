@@ -6,7 +6,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.segmentation import Region
+from perception.region import Region
 from perception.silhouette import corners_in_world
 
 _ANGLE_STEP = np.deg2rad(5.0)

@@ -1,35 +1,29 @@
 """The pose of a face whose look is known, fitted to the brightness of all its pixels in a picture."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
-from cobot_lfd.camera import Camera
 from cobot_lfd.frame import Frame
-from perception.brightness import noise_of
-from perception.face import BLURS, SOFTER, Face, Level
-from perception.foreground import Part
+from perception.blurred_picture import BlurredPicture
+from perception.face import BLURS, Face
+from perception.face_state import FaceState
 from perception.rigid import on_plane
 
-_KERNEL = 9  # Reach of the last blur [px].
 _N_STEPS = 6  # At each blur, at the most.
 _SMALL_STEP = 0.003  # From which on no further step is taken [px].
 _TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
-_POSE = 3  # Unknowns: x, y, angle; then come the light's.
 _N_EVEN = (4, 4, 6)  # Unknowns at each blur where the light is even; at first it is a factor only.
 _N_ALL = 8
 _FEWEST_PIXELS = 60
 _LEAST_INSIDE = 0.3  # Share of a face's pixels that must lie in the picture.
 _RIDGE = 1e-3 * np.eye(_N_ALL)  # Keeps what no pixel tells anything about where it is.
 _DARK = 20.0  # Brightness below which a ratio tells little [0..255].
-_LEAST_CONTRAST = 0.2  # Of the picture, compared with the face; below, it shows something else.
 # Where the light is taken to be uneven, which explains much, a face must be like the expected one in this
 # share of its pixels, with this correlation.
 _SHOWN_IN_SHADE, _CORRELATION_IN_SHADE = 0.8, 0.9
@@ -50,82 +44,6 @@ class FaceFit:
     covariance: Array
     shown: float
     correlation: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BlurredPicture:
-    """How bright a picture is, at each of the blurs that faces are compared at.
-
-    Attributes:
-        levels: The picture at each blur, shape (height, width) each.
-        noise: Standard deviation of the noise in the least blurred one [0..255].
-        camera: The camera that took it.
-    """
-
-    levels: tuple[NDArray[Any], ...]
-    noise: float
-    camera: Camera
-
-    @classmethod
-    def of(cls, image: NDArray[np.uint8], parts: Iterable[Part], camera: Camera) -> "BlurredPicture":
-        """From how bright a picture is; only in its parts may there be faces."""
-        levels = tuple(image.astype(np.float32) for _ in BLURS)
-        for rows, columns in parts:
-            part = image[rows, columns].astype(np.float32)
-            for level, blur in zip(levels, BLURS, strict=True):
-                level[rows, columns] = cv2.GaussianBlur(part, (0, 0), blur)
-        kernel = np.ravel(cv2.getGaussianKernel(_KERNEL, BLURS[-1]))
-        left = float(kernel @ kernel) * 2 / 3  # Of the variance along an axis; interpolation leaves 2/3.
-        return cls(levels, noise_of(image) * left, camera)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _State:
-    """Where a face is taken to be, in what light, through what lens.
-
-    Attributes:
-        frame: The pose.
-        light: A factor of the face's brightness, what is added to it [0..255], the square of a further blur
-            times the factor [px²], and how much the factor grows towards the ends of the frame's axes, (5,).
-        lens: Number of the look of the face, of those through softer and softer lenses.
-    """
-
-    frame: Frame
-    light: Array
-    lens: int = 0
-
-    def expected(self, level: Level) -> Array:
-        """How bright the face's pixels must be, shape (n,)."""
-        return level.looks[self.lens].shades @ self.light
-
-    def jacobian(self, level: Level, free: int) -> Array:
-        """How the difference of seen and expected brightness changes with the unknowns, shape (n, free)."""
-        look = level.looks[self.lens]
-        jacobian = np.empty((len(look.brightness), free))
-        in_world = self.light[0] * look.gradients @ self.frame.rotation.T
-        x, y = (level.local @ self.frame.rotation.T).T
-        jacobian[:, :2] = in_world
-        jacobian[:, 2] = in_world[:, 1] * x - in_world[:, 0] * y
-        jacobian[:, _POSE:] = -look.shades[:, : free - _POSE]
-        return jacobian
-
-    def moved(self, step: Array) -> "_State":
-        """A step further."""
-        light = self.light.copy()
-        light[: len(step) - _POSE] += step[_POSE:]
-        return replace(
-            self, frame=Frame(self.frame.position + step[:2], self.frame.angle + step[2]), light=light
-        )
-
-    def through_the_right_lens(self) -> "_State":
-        """The same with a look of the face that is as soft as the picture."""
-        if self.light[0] < _LEAST_CONTRAST:
-            return self
-        variance = SOFTER[self.lens] ** 2 + self.light[2] / self.light[0]
-        lens = int(np.argmin(np.abs(np.square(SOFTER) - variance)))
-        light = self.light.copy()
-        light[2] = self.light[0] * (variance - SOFTER[lens] ** 2) if lens == self.lens else 0.0
-        return replace(self, light=light, lens=lens)
 
 
 def fit_face(picture: BlurredPicture, face: Face, start: Frame) -> FaceFit | None:
@@ -165,15 +83,15 @@ def _explains_more(shaded: FaceFit, even: FaceFit) -> bool:
     return shaded.shown > _SHOWN_IN_SHADE and shaded.correlation > least
 
 
-def _first(picture: BlurredPicture, face: Face, start: Frame) -> _State:
+def _first(picture: BlurredPicture, face: Face, start: Frame) -> FaceState:
     """The start in a light that seems right, an even factor."""
-    state = _State(start, np.array([1.0, 0.0, 0.0, 0.0, 0.0]))
+    state = FaceState(start, np.array([1.0, 0.0, 0.0, 0.0, 0.0]))
     seen, usable = _seen(picture, face, state, 0)
     ratios = seen[usable] / np.maximum(state.expected(face.levels[0])[usable], _DARK)
     return replace(state, light=state.light * float(np.median(ratios)))
 
 
-def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: int) -> _State:
+def _settled(picture: BlurredPicture, face: Face, state: FaceState, i: int, free: int) -> FaceState:
     """The state that explains the picture at its i-th blur best."""
     level = face.levels[i]
     small = _SMALL_STEP * BLURS[i] / BLURS[-1] * face.metres_per_pixel
@@ -191,7 +109,7 @@ def _settled(picture: BlurredPicture, face: Face, state: _State, i: int, free: i
     return state
 
 
-def _seen(picture: BlurredPicture, face: Face, state: _State, i: int) -> tuple[Array, NDArray[np.bool_]]:
+def _seen(picture: BlurredPicture, face: Face, state: FaceState, i: int) -> tuple[Array, NDArray[np.bool_]]:
     """Brightness of the picture at its i-th blur where a face's pixels land, and which count, (n,) each."""
     camera, level = picture.camera, face.levels[i]
     x, y = camera.project(on_plane(state.frame.apply(level.local), face.z)).astype(np.float32).T
@@ -211,11 +129,13 @@ def _weights(errors: Array, usable: NDArray[np.bool_]) -> Array:
     return np.where(usable, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
 
 
-def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> FaceFit:
+def _judged(picture: BlurredPicture, face: Face, state: FaceState, free: int) -> FaceFit:
     """How well a pose is supported by the least blurred picture.
 
     The covariance is the sandwich ``H^-1 (sum over blocks of g g') H^-1`` (Huber 1967): it takes the errors
-    as they are, also where those of neighbouring pixels hang together.
+    as they are, also where those of neighbouring pixels hang together. Since the fit makes errors smaller
+    than they are, they count as n / (n - p) for n blocks and p unknowns (MacKinnon and White 1985); and since
+    a few blocks tell little of each unknown, half of it is the mean over all unknowns.
     """
     level = face.levels[-1]
     seen, usable = _seen(picture, face, state, len(BLURS) - 1)
@@ -225,6 +145,7 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     shown = weights > _LEAST_WEIGHT
     if shown.sum() < _FEWEST_PIXELS:
         raise _OutOfViewError
+    light = np.column_stack([np.ones(len(seen)), level.across])[:, : 1 if free < _N_ALL else 3]
     jacobian = state.jacobian(level, free)
     weighted = jacobian * weights[:, None]
     pulls = np.stack([np.bincount(level.blocks, pull) for pull in (weighted * errors[:, None]).T], axis=1)
@@ -234,13 +155,13 @@ def _judged(picture: BlurredPicture, face: Face, state: _State, free: int) -> Fa
     spread = pulls.T @ pulls * n_blocks / max(n_blocks - free, 1)
     spread = 0.5 * (spread + float(np.trace(inverse @ spread)) / free * information)
     covariance = (inverse @ spread @ inverse)[:3, :3] + np.diag(face.least_error**2)
-    alike = state.light[0] > _LEAST_CONTRAST
-    light = np.column_stack([np.ones(len(seen)), level.across])[:, : 1 if free < _N_ALL else 3]
     return FaceFit(
         state.frame,
         covariance,
         shown=float(shown.sum() / level.looks[state.lens].undisturbed.sum()),
-        correlation=_correlation(expected[shown], seen[shown], light[shown], picture.noise) if alike else 0.0,
+        correlation=_correlation(expected[shown], seen[shown], light[shown], picture.noise)
+        if state.shows_the_face
+        else 0.0,
     )
 
 

@@ -11,10 +11,11 @@ from cobot_lfd.appearance import Appearance
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen
 from cobot_lfd.frame import Frame
+from perception.blurred_picture import BlurredPicture
 from perception.brightness import brightness
 from perception.face import Face
 from perception.face_choice import contour, is_certain, share, told
-from perception.face_fit import BlurredPicture, FaceFit, fit_face
+from perception.face_fit import FaceFit, fit_face
 from perception.face_search import Search
 from perception.foreground import Part, foreground_parts, without
 from perception.keypoints import FeatureKind, Keypoints, find_keypoints, nearest

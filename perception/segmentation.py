@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import cv2
 import numpy as np
@@ -10,19 +9,19 @@ from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.detection import ObjectModel
+from perception.brightness import noise_of
 from perception.picture import Picture
+from perception.region import Region, connected_regions
 from perception.table import chromaticity, table_colour
 
 _LEAST_SHARE = (
     0.4  # Of the colour difference between table and object: from here on a pixel may be the object.
 )
 _MOST_DEVIATION = 0.6  # Of a pixel from the line between table and object, as a share of the difference.
-_MOST_UNLIKE = 0.35  # Of a region's colour from the expected; coloured light makes 0.1, red for orange 0.5.
 _PALE = 0.1  # Colours whose shares differ less from the table's are told by their brightness, too.
 _BRIGHTNESS_SPREAD = 0.2  # Of the logarithm of an object's brightness, because its faces are shaded.
 _LEAST_BRIGHTER = 0.05  # Of the logarithm: what is that much brighter than the table is no shadow on it.
 _MOST_UNLIKELY = 9.0  # Squared deviation from a pale object's colour, in spreads.
-_SMALLEST = 3  # Fewer averaged pixels are noise; an object has sixty and more.
 _EVERY = 5  # Pixels from one to the next where a part of them is enough.
 _BLACK = 0.02  # No ground is darker.
 _LEAST_NOISE = 0.7  # What rounding leaves at the least [0..255].
@@ -30,45 +29,6 @@ _N_NOISE = 5.0  # Standard deviations of the table's colour that never count as 
 
 _PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
 """Two axes of the plane in which the shares of red, green and blue lie, shape (3, 2)."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Region:
-    """A connected part of the picture that has an object's colour.
-
-    Attributes:
-        hull: Corners of its convex hull [px], shape (n, 2).
-        centroid: Middle of its pixels [px], shape (2,).
-        area: Number of pixels of the full picture [px].
-        colour: Its typical colour, red, green, blue in 0..255, shape (3,).
-        at_border: Whether it touches the picture's edge.
-        unlikeness: How far its colour is from the expected one; 1 is as far as that is from the table's.
-    """
-
-    hull: Array
-    centroid: Array
-    area: float
-    colour: Array
-    at_border: bool
-    unlikeness: float = 0.0
-
-    @property
-    def right_colour(self) -> bool:
-        """Whether its colour is the expected one, give or take the light's."""
-        return self.unlikeness < _MOST_UNLIKE
-
-    def joined(self, other: "Region") -> "Region":
-        """Both as one, with what lies between them."""
-        area = self.area + other.area
-        corners = np.vstack([self.hull, other.hull]).astype(np.float32)
-        return Region(
-            hull=np.asarray(cv2.convexHull(corners)[:, 0], np.float64),
-            centroid=(self.area * self.centroid + other.area * other.centroid) / area,
-            area=area,
-            colour=(self.area * self.colour + other.area * other.colour) / area,
-            at_border=self.at_border or other.at_border,
-            unlikeness=max(self.unlikeness, other.unlikeness),
-        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +70,9 @@ def segment(picture: Picture, models: Sequence[ObjectModel], scale: int) -> Segm
     different = list(dict.fromkeys(looks))
     labels = _label(pixels, table, different).reshape(height, width)
     of_look = {look: _regions(labels == i, small, scale, look, table) for i, look in enumerate(different)}
-    return Segmentation(table, tuple(of_look[look] for look in looks), scale, _noise(picture))
+    return Segmentation(
+        table, tuple(of_look[look] for look in looks), scale, max(_LEAST_NOISE, noise_of(picture[..., 1]))
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +95,6 @@ def _expected(model: ObjectModel, table: Array) -> _Look:
         return _Look((r, g, b), None)
     r, g, b = table * model.colour / np.maximum(model.ground, _BLACK)
     return _Look((r, g, b), float(np.log((r + g + b) / table.sum())))
-
-
-def _noise(picture: Picture) -> float:
-    """Standard deviation of the noise of a picture's pixels [0..255], from neighbours that should agree."""
-    green = picture[:: _EVERY + 3, :, 1].astype(np.int16)
-    typical = float(np.median(np.abs(np.diff(green, axis=1))))
-    return max(_LEAST_NOISE, 1.4826 / 2**0.5 * typical)
 
 
 def _label(pixels: Array, table: Array, looks: Sequence[_Look]) -> NDArray[np.int_]:
@@ -204,39 +159,9 @@ def _regions(
     mask: NDArray[np.bool_], small: Array, scale: int, look: _Look, table: Array
 ) -> tuple[Region, ...]:
     """The connected parts of a mask, the largest first, those of another colour last."""
-    count, labels, stats, centroids = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
-    parts = np.asarray(labels)
-    found = [
-        _region(parts, i, stats[i], np.asarray(centroids[i], np.float64), small, scale)
-        for i in range(1, count)
-        if stats[i, cv2.CC_STAT_AREA] >= _SMALLEST
-    ]
+    found = connected_regions(mask, small, scale)
     if not found:
         return ()
     unlike = _unlikeness(np.array([region.colour for region in found]), look, table)
     found = [replace(region, unlikeness=float(off)) for region, off in zip(found, unlike, strict=True)]
     return tuple(sorted(found, key=lambda region: (not region.right_colour, -region.area)))
-
-
-def _region(
-    labels: NDArray[Any], i: int, stat: NDArray[Any], centroid: Array, small: Array, scale: int
-) -> Region:
-    x, y, width, height = stat[:4]
-    part = labels[y : y + height, x : x + width] == i
-    rows, columns = np.nonzero(part)
-    hull = cv2.convexHull(np.column_stack([columns + x, rows + y]).astype(np.float32))[:, 0]
-    core = cv2.erode(part.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0) > 0
-    colours = small[y : y + height, x : x + width][core if core.any() else part]
-    at_border = x == 0 or y == 0 or x + width == labels.shape[1] or y + height == labels.shape[0]
-    return Region(
-        hull=_full_size(hull, scale),
-        centroid=_full_size(centroid, scale),
-        area=float(stat[cv2.CC_STAT_AREA]) * scale**2,
-        colour=np.median(colours, axis=0),
-        at_border=bool(at_border),
-    )
-
-
-def _full_size(pixels: NDArray[Any], scale: int) -> Array:
-    """Places in the small picture as places in the full one [px]."""
-    return np.asarray((pixels + 0.5) * scale - 0.5, dtype=np.float64)

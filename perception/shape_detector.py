@@ -16,7 +16,8 @@ from perception.coarse_pose import guess_poses
 from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture, check_picture
-from perception.segmentation import Region, Segmentation, segment
+from perception.region import Region
+from perception.segmentation import Segmentation, segment
 from perception.silhouette import silhouette_hull
 
 _LEAST_AREA, _MOST_AREA = 0.3, 1.7  # Of the expected area; less is covered or something else.

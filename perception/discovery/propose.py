@@ -10,7 +10,7 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from perception.discovery.palette import label_colours
 from perception.picture import Picture, check_picture
-from perception.segmentation import Region
+from perception.region import Region
 from perception.table import table_colour
 
 _SMALLEST = 60  # Pixels of a region; fewer tell neither size nor outline.
