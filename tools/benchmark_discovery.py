@@ -10,6 +10,7 @@ recorded ones. A line per set is written as it ends; the same command goes on wh
 """
 
 import json
+import sys
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -23,6 +24,7 @@ from tyro.conf import Positional
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.store import load_kept
+from cobot_lfd.app.discovery.camera import camera_of
 from cobot_lfd.app.discovery.candidates import BASE
 from cobot_lfd.app.discovery.discover import Discovery, discover
 from cobot_lfd.app.recording.sketch import sketch_episode
@@ -85,7 +87,7 @@ def main(
     recorded: Path | None = None,
     seed: int = 40_000,
     workers: int = 1,
-) -> None:
+) -> int:
     """Run the sets that are missing in a file, and print the table of all that are in it.
 
     Args:
@@ -101,6 +103,10 @@ def main(
     """
     names = [f"{name}@{variant}" for name in scenes or scene_names()]
     folder = {name: str(recorded / name.partition("@")[0]) if recorded else "" for name in names}
+    for name in names if recorded else ():
+        if fault := _unfit(name, folder[name], demos):
+            print(f"{fault} Or leave the scene out: --scenes.", file=sys.stderr)
+            return 2
     done = {(row.scene, row.number) for row in _read(out)}
     jobs = [
         Job(name, n, demos, folder[name], seed + n * demos)
@@ -114,6 +120,7 @@ def main(
             file.write(json.dumps(asdict(future.result())) + "\n")
             file.flush()
     print(table([row for row in _read(out) if row.scene in names]))
+    return 0
 
 
 def run(job: Job) -> Row:
@@ -121,7 +128,7 @@ def run(job: Job) -> Row:
     scene = load_scene(job.scene)
     episodes, truth = _recorded(job, scene) if job.folder else _scripted(job, scene)
     try:
-        found = discover(episodes, scene.camera.camera)
+        found = discover(episodes, camera_of(episodes))
     except CobotError as error:
         return Row(job.scene, job.number, str(error), "", float("nan"), float("nan"))
     fault, spread = judge(found, scene, truth)
@@ -181,6 +188,20 @@ def _recorded(job: Job, scene: SceneDescription) -> tuple[list[RecordedEpisode],
     return episodes, [dict(draw_placements(scene, np.random.default_rng(e.seed))) for e in episodes]
 
 
+def _unfit(scene: str, folder: str, n_demonstrations: int) -> str:
+    """Why no sets of a scene can be drawn from a folder; empty if they can."""
+    try:
+        pool = _pool(folder)
+    except CobotError as error:
+        return str(error)
+    others = {episode.scene for episode in pool} - {scene}
+    if others:
+        return f"{folder} holds demonstrations of {', '.join(sorted(others))}, not of {scene}; record some."
+    if len(pool) < n_demonstrations:
+        return f"{folder} holds {len(pool)} demonstrations; a set needs {n_demonstrations}: record more."
+    return ""
+
+
 @lru_cache(maxsize=8)
 def _pool(folder: str) -> list[RecordedEpisode]:
     return load_kept(Path(folder))
@@ -210,4 +231,4 @@ def table(rows: Sequence[Row]) -> str:
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(tyro.cli(main))

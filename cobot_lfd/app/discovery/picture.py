@@ -13,7 +13,8 @@ import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.discovery.discover import Decision, Discovery, Fate
-from cobot_lfd.app.pictures.plot import FRAME_COLOURS, require_plot_file, save_figure
+from cobot_lfd.app.pictures.plot import require_plot_file, save_figure
+from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection
 
@@ -22,9 +23,13 @@ if TYPE_CHECKING:
 
 _N_COLUMNS = 3
 _ROW_HEIGHT = 3.75  # [inch] of a picture with its title
-_DROPPED = "#555555"
+_PAD = 0.1  # [inch] around each panel, or the topmost titles are cut
+_BASE = "#555555"  # It has no colour of its own in the pictures.
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # Of red, green and blue (ITU-R BT.709).
+_MOST_LUMINANCE = 0.45  # Of lines and names on white.
 _PATH = "#111111"
 _MARGIN = 14  # [px] between an outline and its name
+_LETTER = 5.2  # Half the width of a letter [px].
 
 
 def draw_discovery(
@@ -46,7 +51,8 @@ def draw_discovery(
 
     n_rows = -(-len(episodes) // _N_COLUMNS)
     heights = (_ROW_HEIGHT * n_rows, 0.42 * len(discovery.decisions) + 1.2)
-    figure = Figure(figsize=(13.0, sum(heights)), layout="constrained")
+    figure = Figure(figsize=(13.0, sum(heights)))
+    figure.set_layout_engine("constrained", h_pad=_PAD, w_pad=_PAD)
     grid = figure.add_gridspec(2, 1, height_ratios=heights)
     above, below = (figure.add_subfigure(grid[row]) for row in range(2))
     colours = _colours(discovery)
@@ -60,12 +66,18 @@ def draw_discovery(
 
 
 def _colours(discovery: Discovery) -> dict[str, str]:
-    """A colour for each kept frame and what was merged with it; grey for what was dropped."""
-    kept = dict(zip(discovery.kept, FRAME_COLOURS * len(discovery.kept), strict=False))
-    colours: dict[str, str] = {}
-    for motion in discovery.candidates.motions:
-        colours |= dict.fromkeys(motion.members, kept.get(motion.members[0], _DROPPED))
-    return colours
+    """Each candidate's own colour, darkened where it could not be read on white."""
+    models = discovery.candidates.models
+    return {
+        name: _legible(models[name].colour) if name in models else _BASE
+        for name in discovery.candidates.tracks
+    }
+
+
+def _legible(colour: Array) -> str:
+    luminance = float(colour @ _LUMINANCE)
+    red, green, blue = np.rint(255 * colour * min(1.0, _MOST_LUMINANCE / max(luminance, 1e-9))).astype(int)
+    return f"#{red:02x}{green:02x}{blue:02x}"
 
 
 def _draw_demonstration(
@@ -117,12 +129,14 @@ def _draw_candidate(
             )
             drawn = camera.project(np.column_stack([ends, np.full(2, model.z)]))
             axes.plot(*drawn.T, color=colour, linewidth=width, path_effects=rim)
+    name = decision.name if kept else f"{decision.name} ({decision.fate.value})"
+    half = _LETTER * len(name)
     low, high = outline.min(axis=0), outline.max(axis=0)
     below = high[1] + 2 * _MARGIN < camera.height
     axes.text(
-        float(np.clip(0.5 * (low[0] + high[0]), 40, camera.width - 40)),
+        float(np.clip(0.5 * (low[0] + high[0]), half, camera.width - half)),
         float(high[1] + _MARGIN if below else low[1] - _MARGIN),
-        decision.name if kept else f"{decision.name} ({decision.fate.value})",
+        name,
         color=colour,
         fontsize=10 if kept else 8,
         fontweight="bold" if kept else "normal",
