@@ -138,8 +138,13 @@ def _posture(
     robot: RobotDescription,
     draw: Array,
 ) -> Array | None:
-    """Joint positions that hold the board as six numbers in 0..1 say; None where the arm cannot."""
-    column, row, height, tilt, direction, turn = _LOWEST + draw * (_HIGHEST - _LOWEST)
+    """Joint positions that hold the board as six numbers in 0..1 say; None where the arm cannot.
+
+    Places in the picture are denser towards its edges: there a lens bends most, and what it does there tells
+    the principal point from the camera's direction.
+    """
+    spread = np.append(0.5 - 0.5 * np.cos(np.pi * draw[:2]), draw[2:])
+    column, row, height, tilt, direction, turn = _LOWEST + spread * (_HIGHEST - _LOWEST)
     middle = camera.to_plane(np.array([column * camera.width, row * camera.height]), height)
     away = np.arctan2(middle[1], middle[0]) + turn
     lean = Pose.from_rpy(np.zeros(3), [tilt * np.cos(direction), tilt * np.sin(direction), 0.0])
