@@ -81,7 +81,11 @@ def fit_outline(
     coarse = min(_COARSE_PART * width, _COARSE_SPACING)
     frame = start
     for reach in _REACHES:
-        seen = _measure(picture, camera, model, mixture, frame, min(reach, widest), coarse)
+        near = min(reach, widest)
+        # Of a rounded outline's many short sides, few or none may be long enough for a coarse spacing.
+        seen = _measure(picture, camera, model, mixture, frame, near, coarse) or _measure(
+            picture, camera, model, mixture, frame, near
+        )
         if seen is None:
             return None
         step = _robust_step(seen)[0]

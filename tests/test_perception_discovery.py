@@ -119,3 +119,19 @@ def test_what_never_moves_is_one_with_the_base_even_where_it_is_hidden_once() ->
     hidden = Track("box", (*still.sightings, NotSeen("box", "covered")))
     (motion,) = merge([base_track("base", 6), hidden])
     assert motion.members == ("base", "box")
+
+
+def test_a_rounded_outline_of_many_short_sides_is_found() -> None:
+    """None of its sides is long enough for edges to be looked for at a few places only."""
+    angles = np.sort(np.random.default_rng(0).uniform(0.0, 0.3, 13) + np.arange(13) * 2 * np.pi / 13)
+    outline = 0.0196 * np.column_stack([np.cos(angles), np.sin(angles)])
+    scene = load_scene("ball_in_hole")
+    with World(scene, 3) as world:
+        picture, truth = world.take_picture(), world.true_frames()["ball"]
+    camera = scene.camera.camera
+    things = propose(picture, camera)
+    red = next(thing for thing in things if thing.region.colour.argmax() == 0)
+    ball = ObjectModel("ball", outline, 0.02, red.region.colour / 255.0, 8, 0.02)
+    (seen,) = recognise(picture, camera, [ball], things)
+    assert isinstance(seen, Detection), seen
+    assert np.linalg.norm(seen.frame.position - truth.position) < 0.001  # [m]
