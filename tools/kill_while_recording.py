@@ -26,7 +26,7 @@ from cobot_lfd.app.recording.record import record_session
 
 _N_EPISODES = 5
 _LONGEST = (
-    12.0  # [s] of processor time after which a recorder is killed at the latest; an episode takes 4 to 6
+    7.0  # [s] of processor time after which a recorder is killed at the latest; an episode takes 4 to 6
 )
 _AROUND_SAVING = 0.06  # [s] from the first sign of saving
 _LOOK_EVERY = 0.003  # [s] between two looks at the recorder's clock
