@@ -22,7 +22,7 @@ class Suggestion:
     Attributes:
         index: Which of the candidates.
         uncertainty: Root mean square standard deviation of its path, as the model predicts it [m].
-        reason: Why, as a sentence for the user.
+        reason: Why, in sentences for the user, in which the scene is "it".
     """
 
     index: int
@@ -67,11 +67,12 @@ def suggest_demonstration(
     value = gain / max(gain.max(), 1e-12) + DOUBT_WEIGHT * novelty
     best = int(np.argmax(value))
     reason = (
-        f"it tells most about the others, its own path being uncertain by {uncertainty[best] * 1000:.0f} mm"
+        "It would teach most: with it, the model would be surest of its paths in all other scenes. "
+        f"In this one, it knows the path to about {uncertainty[best] * 1000:.0f} mm so far."
     )
     if doubtful:
-        reason += f", and it shows a new direction of '{doubtful[0]}', whose kind is undecided"
-    return Suggestion(best, float(uncertainty[best]), f"Scene {best} is worth showing: {reason}.")
+        reason += f" It also shows '{doubtful[0]}' turned another way, to tell whether its direction matters."
+    return Suggestion(best, float(uncertainty[best]), reason)
 
 
 def _new_directions(candidates: Scenes, shown: Scenes) -> Array:

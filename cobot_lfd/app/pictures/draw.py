@@ -37,6 +37,7 @@ def draw_detections(
     detour: ArrayLike | None = None,
     path_z: float | None = None,
     scale: int = 2,
+    text_height: float = 9.0,
     judged: bool = False,
 ) -> Picture:
     """Draw each object's outline, axes, name and standard errors on an enlarged copy of the camera's picture.
@@ -53,13 +54,14 @@ def draw_detections(
         path_z: Height at which both are drawn [m]; None for that of the highest outline, so that path and
             frames are seen in one plane, or for the table where there are no models.
         scale: How many times the picture is enlarged, so that thin lines and small text stay legible.
+        text_height: Of letters, in pixels of the camera's picture; more where it will be shown small.
         judged: Whether to draw also how sure each place is, as an ellipse, and to write each confidence.
 
     Returns:
         RGB uint8, shape (scale * H, scale * W, 3).
     """
     by_name = {model.name: model for model in models}
-    canvas = _Canvas(picture, camera, scale)
+    canvas = _Canvas(picture, camera, scale, text_height)
     highest = max((model.z for model in by_name.values()), default=0.0)
     for way, colour in ((path, PATH_COLOUR), (detour, DETOUR_COLOUR)):
         if way is not None:
@@ -150,7 +152,7 @@ def _draw_label(canvas: "_Canvas", detection: Detection, extent: Array, *, judge
 class _Canvas:
     """An enlarged picture that is drawn on in the camera's pixel coordinates."""
 
-    def __init__(self, picture: Picture, camera: Camera, scale: int) -> None:
+    def __init__(self, picture: Picture, camera: Camera, scale: int, text_height: float) -> None:
         if picture.shape != (camera.height, camera.width, 3) or picture.dtype != np.uint8:
             raise ValueError(
                 f"picture has shape {picture.shape} and type {picture.dtype}; this camera takes "
@@ -162,6 +164,7 @@ class _Canvas:
         )
         self._camera = camera
         self._scale = scale
+        self._text_height = text_height * scale
 
     def project(self, points: Array, z: float) -> Array:
         """Pixel positions of points at a height above the table."""
@@ -184,26 +187,26 @@ class _Canvas:
         self._lines(np.stack([start, tip]), colour, closed=False)
         for side in (across, -across):
             self._lines(np.stack([tip, tip - 4.0 * along + 2.5 * side]), colour, closed=False)
-        middle = self._enlarged(tip + 7.0 * along)
-        self._text(name, middle + self._scale * np.array([-3.0, 3.5]), colour)
+        middle = self._enlarged(tip) + 0.78 * self._text_height * along
+        self._text(name, middle + self._text_height * np.array([-0.33, 0.39]), colour)
 
     def text_below(self, extent: Array, lines: list[str]) -> None:
-        height = 10.0 * self._scale
+        height = 1.1 * self._text_height
         left = self._enlarged(extent.min(axis=0))[0]
         top, bottom = self._enlarged(extent)[:, 1].min(), self._enlarged(extent)[:, 1].max()
         fits = bottom + (len(lines) + 1) * height < self.picture.shape[0]
         y = bottom + 2.0 * height if fits else top - (len(lines) - 0.2) * height
         for number, line in enumerate(lines):
-            width = 5.2 * self._scale * len(line)
+            width = 0.58 * self._text_height * len(line)
             x = float(np.clip(left, 4.0, max(4.0, self.picture.shape[1] - width)))
             self._text(line, np.array([x, y + number * height]), WHITE)
 
     def note(self, text: str) -> None:
         """Words in the picture's lower left corner."""
-        self._text(text, np.array([6.0, self.picture.shape[0] - 4.0 * self._scale]), WHITE)
+        self._text(text, np.array([6.0, self.picture.shape[0] - 0.45 * self._text_height]), WHITE)
 
     def _text(self, text: str, origin: Array, colour: Colour) -> None:
-        font, size, weight = cv2.FontFace("sans"), 9 * self._scale, 500
+        font, size, weight = cv2.FontFace("sans"), round(self._text_height), 500
         x, y = round(float(origin[0])), round(float(origin[1]))
         for dx in (-1, 0, 1):
             for dy in (-1, 0, 1):

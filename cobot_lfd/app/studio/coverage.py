@@ -50,13 +50,12 @@ def suggest_next(
     seeds = range(first_seed, first_seed + _N_CANDIDATES)
     candidates = [dict(draw_placements(scene, np.random.default_rng(seed))) for seed in seeds]
     if not demonstrations:
-        return NextScene(first_seed, "Nothing is learnable yet, so any scene is as good as another.")
+        return NextScene(first_seed, "Nothing was shown yet, so any scene is as good as another.")
     shown = [demonstration.frames for demonstration in demonstrations]
     model = _fitted(demonstrations)
     if model is not None:
         suggestion = suggest_demonstration(model, candidates, shown)
-        reason = suggestion.reason.replace(f"Scene {suggestion.index}", "It")
-        return NextScene(seeds[suggestion.index], reason)
+        return NextScene(seeds[suggestion.index], suggestion.reason)
     distances = np.array([[_distances(candidate, frames) for frames in shown] for candidate in candidates])
     nearest = distances.sum(axis=2).min(axis=1)
     best = int(nearest.argmax())
@@ -91,8 +90,8 @@ def _reason(frames: Mapping[str, Frame], shown: Sequence[Mapping[str, Frame]]) -
     far = min(float(np.linalg.norm(frames[newest].position - frame.position)) for frame in seen)
     turned = min(_turn(frames[newest].angle, frame.angle) for frame in seen)
     return (
-        f"Its {newest} stands {100 * far:.0f} cm from every place, and points {np.rad2deg(turned):.0f}° away "
-        "from every direction, that was shown."
+        f"Its {newest} stands {100 * far:.0f} cm or more from wherever it was shown, and is turned by "
+        f"{np.rad2deg(turned):.0f}° or more."
     )
 
 

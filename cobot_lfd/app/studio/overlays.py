@@ -16,42 +16,43 @@ from robots import RobotDescription
 
 _NEAR_LIMIT = 0.15  # [rad] from a limit at which a joint begins to glow
 _ON_TABLE = 0.004  # [m] above the table, where planar paths are drawn
+_PLUMB_LENGTH = 0.5  # [m]; what is below the table cannot be seen
 _N_ELLIPSES = 16
 _PLUMB, _FORCE = (120, 120, 120), (240, 120, 20)
 _PATH, _GENERATED, _COVARIANCE = (90, 90, 90), (10, 10, 10), (86, 180, 233)
 
 
 class ForceLine:
-    """The line from the tool to where the hand wants it, drawn while the hand pulls."""
+    """The line from the tool to where the hand wants it, drawn while the hand pulls.
+
+    It is a rod of length 1 that is moved, turned and stretched: the page draws a line with new ends anew.
+    """
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self._line = server.scene.add_line_segments(
-            "/hand/force",
-            np.zeros((1, 2, 3), dtype=np.float32),
-            colors=_FORCE,
-            thickness=4.0,
-            thickness_units="screen",
-        )
-        self._end = server.scene.add_icosphere("/hand/pointer", radius=0.012, color=_FORCE)
-        self._line.visible = self._end.visible = False
+        self._rod = server.scene.add_cylinder("/hand/force", radius=0.004, height=1.0, color=_FORCE)
+        self._end = server.scene.add_icosphere("/hand/pointer", radius=0.012, subdivisions=2, color=_FORCE)
+        self._rod.visible = self._end.visible = False
 
     def show(self, tool: Array, pointer: Array | None) -> None:
         """Draw it, or hide it where nobody pulls."""
-        pulls = pointer is not None
         if pointer is not None:
-            self._line.points = np.array([[tool, pointer]], dtype=np.float32)
+            way = pointer - tool
+            self._rod.position = tool + 0.5 * way
+            self._rod.wxyz = _from_vertical(way)
+            self._rod.scale = (1.0, 1.0, max(float(np.linalg.norm(way)), 1e-3))
             self._end.position = pointer
-        if self._line.visible != pulls:
-            self._line.visible = self._end.visible = pulls
+        pulls = pointer is not None
+        if self._rod.visible != pulls:
+            self._rod.visible = self._end.visible = pulls
 
 
 class Plumb:
-    """A thin line from the tool down to the table, which shows where the tool would come down."""
+    """A thin line from the tool down through the table, which shows where the tool would come down."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._line = server.scene.add_line_segments(
             "/hand/plumb",
-            np.zeros((1, 2, 3), dtype=np.float32),
+            np.array([[[0.0, 0.0, 0.0], [0.0, 0.0, -_PLUMB_LENGTH]]], dtype=np.float32),
             colors=_PLUMB,
             thickness=1.5,
             thickness_units="screen",
@@ -60,9 +61,8 @@ class Plumb:
 
     def show(self, tool: Array) -> None:
         """Draw it for a place of the tool [m], shape (3,)."""
-        foot = np.array([tool[0], tool[1], _ON_TABLE])
-        self._line.points = np.array([[tool, foot]], dtype=np.float32)
-        self._foot.position = foot
+        self._line.position = tool
+        self._foot.position = np.array([tool[0], tool[1], _ON_TABLE])
 
 
 class Glow:
@@ -132,6 +132,14 @@ class Paths:
         return self._server.scene.add_line_segments(
             name, segments, colors=colour, thickness=width, thickness_units="screen"
         )
+
+
+def _from_vertical(way: Array) -> Array:
+    """The shortest turn from the z axis into a direction, as a quaternion w, x, y, z."""
+    x, y, z = way / max(float(np.linalg.norm(way)), 1e-9)
+    turn = np.array([1.0 + z, -y, x, 0.0])
+    length = float(np.linalg.norm(turn))
+    return turn / length if length > 1e-6 else np.array([0.0, 1.0, 0.0, 0.0])
 
 
 def _ellipse(centre: Array, covariance: Array) -> Array:

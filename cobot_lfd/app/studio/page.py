@@ -41,8 +41,8 @@ class Page:
         server.scene.configure_default_lights(cast_shadow=False)
         server.scene.configure_environment_map(hdri=None)
         server.scene.add_light_ambient("/light", intensity=1.5)
-        server.initial_camera.position = (1.45, -0.55, 0.95)
-        server.initial_camera.look_at = (0.45, 0.12, 0.12)
+        server.initial_camera.position = (1.3, -0.5, 0.8)
+        server.initial_camera.look_at = (0.4, 0.05, 0.17)
 
     def attach(self, session: Session) -> None:
         """Add the panel and listen to the mouse."""

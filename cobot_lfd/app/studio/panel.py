@@ -12,10 +12,12 @@ from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.kept import Kept
 from cobot_lfd.app.studio.orders import Order, Orders
 from cobot_lfd.app.studio.session import Session
+from cobot_lfd.learning.model import TaskParameterisedGMM
 from scenes import World, object_models
 
 WORLD = "where they were"
 _NONE = "none"
+_LETTERS = 20.0  # [px] in the camera's picture, which the panel shows at about half its size
 _BUSY = (Mode.WORKING, Mode.REPLAYING, Mode.TRYING)
 
 
@@ -54,7 +56,9 @@ class Panel:
         """Show what the camera saw, with the frames that were found."""
         camera = world.description.camera.camera
         models = object_models(world.description)
-        self._camera.image = draw_detections(view.picture, camera, view.detections, models=models, scale=1)
+        self._camera.image = draw_detections(
+            view.picture, camera, view.detections, models=models, scale=1, text_height=_LETTERS
+        )
         names = [seen.name for seen in view.detections]
         if list(self._overlay.options) != [WORLD, *names, _NONE]:
             self._overlay.options = [WORLD, *names, _NONE]
@@ -65,17 +69,18 @@ class Panel:
         self._status.content = f"**{'● ' if mode is Mode.RECORDING else ''}{mode.value}**"
         recording, busy = mode is Mode.RECORDING, mode in _BUSY
         self._start.disabled, self._stop.disabled = recording or busy, not recording
-        self._discard.disabled = session.last is None or busy
+        self._discard.disabled = session.keeper.last is None or busy
         self._redo.disabled = self._next.disabled = busy
-        self._undo.visible = session.can_undo
-        self._discard.visible = not session.can_undo
+        self._undo.visible = session.keeper.can_undo
+        self._discard.visible = not session.keeper.can_undo
         self._table.content = _table(session.kept)
         numbers = [str(number) for number in session.kept.episodes] or [_NONE]
         if list(self._chosen.options) != numbers:
             self._chosen.options = numbers
             self._chosen.value = numbers[-1]
         learnt = session.model is not None
-        self._learnt.content = session.model.explain() if session.model is not None else _UNLEARNT
+        self._learnt.content = _UNLEARNT if session.model is None else _explained(session.model)
+        self._halt.disabled = mode not in (Mode.REPLAYING, Mode.TRYING)
         self._learn.disabled = busy or len(session.kept.good) < 2
         self._try.disabled = busy or recording or not learnt
 
@@ -128,7 +133,7 @@ class Panel:
     def _add_learning(self) -> None:
         self._learn = self._order(self._orders.learn, "school")
         self._try = self._order(self._orders.attempt, "robot")
-        self._order(self._orders.halt, "hand-stop")
+        self._halt = self._order(self._orders.halt, "hand-stop")
         self._learnt = self._server.gui.add_markdown(_UNLEARNT)
 
     def _group(self, label: str, orders: tuple[Order, ...]) -> None:
@@ -170,11 +175,16 @@ class Panel:
 _UNLEARNT = "Nothing is learnt yet. Show the task two times or more, then press Learn."
 
 
+def _explained(model: TaskParameterisedGMM) -> str:
+    """What was learnt, a paragraph for each sentence."""
+    return "\n\n".join(model.explain().splitlines())
+
+
 def _table(kept: Kept) -> str:
     """The demonstrations as a table in Markdown."""
     if not kept.episodes:
         return "Nothing is kept yet."
-    lines = ["| | seed | s | smooth | |", "|---|---|---|---|---|"]
+    lines = ["| no. | seed | seconds | smooth | |", "|---|---|---|---|---|"]
     for number, episode in kept.episodes.items():
         quality = kept.qualities[number]
         smooth = "-" if quality.smoothness is None else f"{quality.smoothness:.2f}"

@@ -1,21 +1,16 @@
 """A session in the studio: what its buttons do, in the one thread that owns the simulation."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from time import sleep
 
-from cobot_lfd.app.demonstrations.folder import restore_episode, trash_episode
-from cobot_lfd.app.demonstrations.store import episode_number, require_writable, save_episode
 from cobot_lfd.app.episode import Bench, run_episode
 from cobot_lfd.app.execute import Observer
-from cobot_lfd.app.recording.carry import trimmed_carry
-from cobot_lfd.app.recording.record import seeds_in
-from cobot_lfd.app.recording.recorder import Recorder
 from cobot_lfd.app.recording.replay import replay_in
 from cobot_lfd.app.studio.audience import Audience, Mode
 from cobot_lfd.app.studio.coverage import suggest_next
 from cobot_lfd.app.studio.inbox import Cancelled, Inbox
+from cobot_lfd.app.studio.keeper import Keeper
 from cobot_lfd.app.studio.kept import Kept
 from cobot_lfd.app.studio.stage import Stage
 from cobot_lfd.errors import CobotError
@@ -36,8 +31,7 @@ class Session:
     Attributes:
         stage: Table, arm and hand.
         mode: What is going on.
-        kept: The demonstrations in the folder.
-        last: Number of the demonstration that was recorded last; None where it was discarded.
+        keeper: What is recorded, and what was kept.
         model: What was learnt; None before that.
         path: The path that the model has for the present scene.
     """
@@ -58,21 +52,16 @@ class Session:
             DescriptionError: If there is no such scene or robot.
             DataError: If the folder holds demonstrations of another scene or robot, or cannot be written.
         """
-        seeds_in(folder, scene_name, robot_name)
-        self._scene_name, self._robot_name, self._folder = scene_name, robot_name, folder
-        self._audience = audience
-        self._inbox = Inbox()
-        self._recorder: Recorder | None = None
-        self._discarded: list[int] = []
-        self.mode = Mode.WORKING
-        self.kept = Kept.read(folder)
-        self.last: int | None = None
-        self.model: TaskParameterisedGMM | None = None
-        self.path: GeneratedPath | None = None
         scene = load_scene(scene_name)
         robot = load_robot(robot_name, scene.task.tool)
-        require_writable(folder)
-        self.stage = Stage(scene, robot, self._fresh_seed(first_seed), audience)
+        self._scene_name, self._robot_name = scene_name, robot_name
+        self._audience = audience
+        self._inbox = Inbox()
+        self.mode = Mode.WORKING
+        self.keeper = Keeper(scene_name, robot_name, folder)
+        self.model: TaskParameterisedGMM | None = None
+        self.path: GeneratedPath | None = None
+        self.stage = Stage(scene, robot, self.keeper.fresh_seed(first_seed), audience)
 
     @property
     def latencies(self) -> list[float]:
@@ -80,9 +69,9 @@ class Session:
         return list(self.stage.latencies)
 
     @property
-    def can_undo(self) -> bool:
-        """Whether something was discarded that can be brought back."""
-        return bool(self._discarded)
+    def kept(self) -> Kept:
+        """The demonstrations in the folder."""
+        return self.keeper.kept
 
     @property
     def is_open(self) -> bool:
@@ -99,7 +88,7 @@ class Session:
             self.stage.show()
             self._do(self._get_ready)
             while self.is_open:
-                self.stage.lead(self._inbox.until_ordered(self.stage.hand), self._recorder)
+                self.stage.lead(self._inbox.until_ordered(self.stage.hand), self.keeper.recorder)
                 while self.is_open and self._inbox.waits:
                     self._do(self._inbox.take())
         finally:
@@ -112,17 +101,17 @@ class Session:
 
     def start(self) -> None:
         """Begin to record; where the scene was touched, it is laid out anew first."""
-        if self._recorder is not None:
+        if self.keeper.recorder is not None:
             return
         if self.stage.touched:
             self._lay_out(self.stage.seed)
         self.stage.begin()
-        self._recorder = Recorder(self.stage.scene.physics.time_step)
+        self.keeper.begin(self.stage.scene.physics.time_step)
         self._set_mode(Mode.RECORDING)
 
     def stop(self) -> None:
         """End the recording, let the physics judge it, and keep it: nothing is lost from here on."""
-        if self._recorder is None:
+        if self.keeper.recorder is None:
             return
         self._set_mode(Mode.WORKING)
         self._save(self.stage.judge())
@@ -130,25 +119,18 @@ class Session:
 
     def discard(self, number: int) -> None:
         """Move a demonstration to the trash."""
-        path = trash_episode(self._folder, number)
-        self._discarded.append(number)
-        if self.last == number:
-            self.last = None
-        self._reread(f"Moved to {path}. Undo brings it back.")
+        path = self.keeper.discard(number)
+        self._tell(f"Moved to {path}. Undo brings it back.")
 
     def discard_last(self) -> None:
         """Move the demonstration that was recorded last to the trash."""
-        if self.last is not None:
-            self.discard(self.last)
+        if self.keeper.last is not None:
+            self.discard(self.keeper.last)
 
     def undo(self) -> None:
         """Bring back what was discarded last."""
-        if not self._discarded:
-            self._audience.said("There is nothing to undo.")
-            return
-        path = restore_episode(self._folder, self._discarded[-1])
-        self.last = self._discarded.pop()
-        self._reread(f"Back again: {path}.")
+        path = self.keeper.undo()
+        self._tell("There is nothing to undo." if path is None else f"Back again: {path}.")
 
     def redo(self) -> None:
         """Discard the last demonstration, or the one that is being recorded, and record the scene again."""
@@ -160,7 +142,7 @@ class Session:
     def next_scene(self) -> None:
         """Go on with the scene that tells most, and say why."""
         demonstrations = [episode.demonstration() for episode in self.kept.good]
-        first = self._fresh_seed(self.stage.seed + 1)
+        first = self.keeper.fresh_seed(self.stage.seed + 1)
         following = suggest_next(self.stage.scene, first, demonstrations)
         self._audience.said(f"Next scene, seed {following.seed}. {following.reason}")
         self.lay_out(following.seed)
@@ -232,7 +214,7 @@ class Session:
     def abandoned(self) -> None:
         """Nobody is there any more: the arm rests, and what was recorded is kept as incomplete."""
         self.stage.hand.let_go()
-        if self._recorder is not None:
+        if self.keeper.recorder is not None:
             self._keep_incomplete()
             self._set_mode(Mode.STOPPED)
 
@@ -242,12 +224,7 @@ class Session:
             what()
         except CobotError as error:
             self._audience.said(str(error), bad=True)
-            self._set_mode(Mode.RECORDING if self._recorder is not None else Mode.READY)
-
-    def _fresh_seed(self, first: int) -> int:
-        """The first seed that no demonstration has."""
-        taken = {episode.seed for episode in self.kept.episodes.values()}
-        return next(seed for seed in range(first, first + len(taken) + 1) if seed not in taken)
+            self._set_mode(Mode.RECORDING if self.keeper.recorder is not None else Mode.READY)
 
     def _lay_out(self, seed: int) -> None:
         """A fresh scene, the arm where a person takes its hand."""
@@ -268,32 +245,17 @@ class Session:
 
     def _save(self, verdict: Verdict) -> None:
         """Keep what was recorded; it is safe on the disk when this returns, or still being recorded."""
-        recorder, view = self._recorder, self.stage.view
-        if recorder is None or recorder.n_samples < 2:
-            self._recorder = None
-            return
-        recorded = recorder.episode(
-            self._scene_name,
-            self._robot_name,
-            self.stage.seed,
-            verdict,
-            view.picture,
-            view.detections,
-            self.stage.scene.camera.camera,
-        )
-        episode = replace(recorded, carrying=trimmed_carry(recorded.carrying, recorded.tool_positions))
-        path = save_episode(self._folder, episode)
-        self._recorder = None
-        self.last = episode_number(path)
-        self.stage.touched = True
-        self._reread(f"Kept as {path}: {verdict.sentence}.", bad=not verdict.succeeded)
+        path = self.keeper.save(self.stage, verdict)
+        if path is not None:
+            self.stage.touched = True
+            self._tell(f"Kept as {path}: {verdict.sentence}.", bad=not verdict.succeeded)
 
     def _keep_incomplete(self) -> None:
         """Keep a recording that nobody ended, labelled so."""
         self._save(Verdict(Outcome.INCOMPLETE, "nobody ended it"))
 
-    def _reread(self, sentence: str, *, bad: bool = False) -> None:
-        self.kept = Kept.read(self._folder)
+    def _tell(self, sentence: str, *, bad: bool = False) -> None:
+        """Say what happened, and show what is kept now."""
         self._audience.said(sentence, bad=bad)
         self._audience.changed(self)
 
