@@ -74,6 +74,7 @@ def studio_at_work(folder: Path, seed: int) -> Iterator[Studio]:
     assert not failures, failures
 
 
+WINDOW = {"width": 900, "height": 480}  # [px]
 FAST = 4.0  # times real time, where the arm moves by itself and nobody needs to watch
 
 
@@ -89,7 +90,7 @@ class Person:
         self.session = studio.session
         self.hurried = 0.0
         # The browser's library is imported only where there is a browser, so its type is not named here.
-        self.page = browser.new_page(viewport={"width": 900, "height": 480})  # type: ignore[attr-defined]
+        self.page = browser.new_page(viewport=WINDOW)  # type: ignore[attr-defined]
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)
         self.page.get_by_text("Start [R]", exact=True).wait_for(timeout=90_000)
@@ -126,11 +127,10 @@ class Person:
         self.wait_until(lambda: self.session.mode is mode, f"{mode} (it is {self.session.mode})", 120)
 
     def press(self, label: str) -> None:
-        """Press a button, where it is on the page."""
-        button = self.page.get_by_text(label, exact=True)
-        self.wait_until(button.is_enabled, f"'{label}' can be pressed")
-        box = button.bounding_box(timeout=60_000)
-        self.page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+        """Press a button, as soon as it is there, rests and can be pressed."""
+        self.page.get_by_role("tab", name=label, exact=True).or_(
+            self.page.get_by_role("button", name=label, exact=True)
+        ).click(timeout=60_000)
 
     def tool(self) -> Array:
         """Where the tool is [m]; read from the simulation's last state, as shown."""
@@ -151,7 +151,7 @@ class Person:
         self.wait_until(lambda: self._sees_handle_at(tool), "the page shows the tool where it is")
         place = self.pixel(tool)
         mouse.move(*place)
-        self._draw()
+        self.wait_until(self._is_over_handle, "the mouse is over the handle")
         mouse.down()
         way = np.array([*(goal - tool[:2]), 0.0])
         for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, steps)):
@@ -169,10 +169,12 @@ class Person:
         )
         return bool(np.linalg.norm(np.array(place) - tool) < 0.005)
 
-    def _draw(self) -> None:
-        """Let the page draw once, and hear of the mouse."""
-        self.page.evaluate(
-            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    def _is_over_handle(self) -> bool:
+        """Whether the page knows that the mouse is over something that can be dragged."""
+        return bool(
+            self.page.evaluate(
+                "() => [...document.querySelectorAll('canvas')].some((c) => c.style.cursor === 'pointer')"
+            )
         )
 
     def _correct(self, goal: Array, place: Array) -> None:
