@@ -28,7 +28,7 @@ _TURN = 0.6  # Waves along an edge that turn it most.
 _SHORTEST = 2.0  # Waves shorter than that [px] count as noise,
 _SHORT_WAVES = 0.006  # of this variance [px²]: so much is missing in the sum, and hangs together less.
 _ALL_WAVES = 0.05  # Variance of short and long ones together [px²]; 0.045 to 0.083, by simulation.
-_WEAKEST = 2e-4  # Variance below which a wave does not count [px²].
+_WEAKEST = 4e-4  # Variance below which a wave does not count [px²].
 _GRID = np.array([(i, j) for i in range(_REACH + 1) for j in range(-_REACH, _REACH + 1) if (i, j) > (0, 0)])
 """Half of the reciprocal grid's points, shape (k, 2); the others are their opposites."""
 
@@ -102,22 +102,21 @@ def _covariance(pixels: Array, normal: Array, noise: EdgeNoise) -> tuple[Array, 
     variances, frequencies = stair_waves(normal)
     variances = noise.stairs * variances
     distance = np.linalg.norm(pixels - pixels[0], axis=1)
-    length = float(distance.max()) + 1.0
+    length = float(distance[-1]) + 1.0
     rest = max(noise.variance - noise.stairs * _ALL_WAVES, 0.0)
-    white = (_SPREAD * rest + noise.stairs * _SHORT_WAVES + _LEAST_NOISE**2) * np.eye(len(pixels))
+    white = _SPREAD * rest + noise.stairs * _SHORT_WAVES + _LEAST_NOISE**2
+    R = _of_waves(distance, variances, frequencies) + noise.bias**2 + white * np.eye(len(pixels))
     few = np.abs(frequencies) * length < _FEW
-    turning = np.full(few.sum(), _TURN / length)
-    shared = np.append(np.where(few, 0.5, 1.0) * variances, 0.5 * variances[few])
-    R = _of_waves(distance, variances, frequencies) + noise.bias**2 + white
-    turned = _of_waves(distance, shared, np.append(frequencies, turning)) + noise.bias**2 + white
-    return R, turned
+    half = 0.5 * variances[few]
+    turn = _of_waves(distance, half.sum(keepdims=True), np.array([_TURN / length]))
+    return R, R - _of_waves(distance, half, frequencies[few]) + turn
 
 
 def _of_waves(distance: Array, variances: Array, frequencies: Array) -> Array:
     """Covariance of waves of unknown phase at places along an edge [px²], shape (k, k)."""
-    phases = 2 * np.pi * distance[:, None] * frequencies
-    waves = np.hstack([np.cos(phases), np.sin(phases)]) * np.sqrt(np.tile(variances, 2))
-    return np.asarray(waves @ waves.T, np.float64)
+    waves = np.sqrt(variances) * np.exp(2j * np.pi * np.outer(distance, frequencies))
+    both = waves.view(np.float64)  # Cosines and sines, side by side.
+    return np.asarray(both @ both.T)
 
 
 def stair_waves(normal: Array) -> tuple[Array, Array]:
@@ -127,8 +126,10 @@ def stair_waves(normal: Array) -> tuple[Array, Array]:
         normal: Unit vector in the picture at right angles to the edge, shape (2,).
     """
     along = np.array([-normal[1], normal[0]])
-    across, frequencies = np.abs(_GRID @ normal), _GRID @ along
-    interpolated = np.prod(np.sinc(frequencies[:, None] * along), axis=1) ** 4
+    frequencies = _GRID @ along
+    long = np.abs(frequencies) * _SHORTEST < 1.0
+    across, frequencies = np.abs(_GRID[long] @ normal), frequencies[long]
+    interpolated = (np.sinc(frequencies * along[0]) * np.sinc(frequencies * along[1])) ** 4
     variances = interpolated / (2 * np.pi**2 * np.maximum(across, 0.1) ** 2)
-    long = (np.abs(frequencies) * _SHORTEST < 1.0) & (variances > _WEAKEST)
-    return variances[long], frequencies[long]
+    strong = variances > _WEAKEST
+    return variances[strong], frequencies[strong]
