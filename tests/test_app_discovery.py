@@ -10,7 +10,8 @@ import pytest
 from cobot_lfd.app.cli import main
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.demonstrations.store import save_episode
-from cobot_lfd.app.discovery.discover import Discovery, Fate, discover
+from cobot_lfd.app.discovery.decisions import Fate
+from cobot_lfd.app.discovery.discover import Discovery, discover
 from cobot_lfd.app.discovery.picture import draw_discovery
 from cobot_lfd.app.discovery.recognised import demonstrations_of
 from cobot_lfd.app.discovery.told import told
@@ -30,7 +31,7 @@ CAMERA = SCENE.camera.camera
 
 
 @cache
-def shown(scene_name: str, n: int = 4) -> tuple[RecordedEpisode, ...]:
+def shown(scene_name: str, n: int = 3) -> tuple[RecordedEpisode, ...]:
     scene = load_scene(scene_name)
     return tuple(sketch_episode(scene_name, scene, "panda", seed)[0] for seed in range(n))
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
 from cobot_lfd.app.demonstrations.episode import RecordedEpisode
 from cobot_lfd.app.discovery.candidates import BASE, Candidates, find_candidates
+from cobot_lfd.app.discovery.decisions import Decision, Fate, decide
 from cobot_lfd.camera import Camera
 from cobot_lfd.demonstration import Demonstration
 from cobot_lfd.detection import Detection, NotSeen
@@ -18,29 +18,6 @@ from cobot_lfd.recognition import LearntFrame, Part, Recognition
 from perception.discovery import Motion, Track
 
 _FEWEST = 3  # Demonstrations; of two, none can be left out and predicted from the rest.
-
-
-class Fate(Enum):
-    """What became of a candidate."""
-
-    KEPT = "kept"
-    MERGED = "merged"
-    DROPPED = "dropped"
-
-
-@dataclass(frozen=True, slots=True)
-class Decision:
-    """What became of a candidate, and why.
-
-    Attributes:
-        name: The candidate.
-        fate: What became of it.
-        reason: Why, as a sentence.
-    """
-
-    name: str
-    fate: Fate
-    reason: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,7 +78,7 @@ def discover(episodes: Sequence[RecordedEpisode], camera: Camera) -> Discovery:
     ]
     known_kinds = _known_kinds(usable, candidates)
     choice = choose_frames(shown, known_kinds)
-    decisions = _decisions(candidates, frames, choice)
+    decisions = decide(candidates, frames, choice)
     kept = [item.name for item in decisions if item.fate is Fate.KEPT]
     return Discovery(
         candidates,
@@ -169,31 +146,6 @@ def _known_kinds(names: Mapping[str, object], candidates: Candidates) -> dict[st
         for name in names
         if name == BASE or candidates.tracks[name].symmetry > 1
     }
-
-
-def _decisions(
-    candidates: Candidates, frames: Mapping[str, list[Frame] | str], choice: FrameChoice
-) -> tuple[Decision, ...]:
-    decisions = []
-    for motion in candidates.motions:
-        first = motion.members[0]
-        found = frames[first]
-        if isinstance(found, str):
-            decisions.append(Decision(first, Fate.DROPPED, found))
-        else:
-            verdict = choice.verdicts[first]
-            decisions.append(Decision(first, Fate.KEPT if verdict.kept else Fate.DROPPED, verdict.reason))
-        for name, test in zip(motion.members[1:], motion.tests, strict=True):
-            what = "it never moves" if first == BASE else f"it moves rigidly with '{first}'"
-            decisions.append(
-                Decision(
-                    name,
-                    Fate.MERGED,
-                    f"{what} (squared deviations {test.statistic:.1f}, up to {test.limit:.1f} are chance), "
-                    f"so '{first}' stands for both.",
-                )
-            )
-    return tuple(decisions)
 
 
 def _recognition(candidates: Candidates, kept: Sequence[str]) -> Recognition:

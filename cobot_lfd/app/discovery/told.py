@@ -2,7 +2,8 @@
 
 from textwrap import fill
 
-from cobot_lfd.app.discovery.discover import Decision, Discovery
+from cobot_lfd.app.discovery.decisions import Decision
+from cobot_lfd.app.discovery.discover import Discovery
 
 _WIDTH = 100  # Columns of the text.
 
