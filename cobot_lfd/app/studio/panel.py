@@ -176,8 +176,8 @@ _UNLEARNT = "Nothing is learnt yet. Show the task two times or more, then press 
 
 
 def _explained(model: TaskParameterisedGMM) -> str:
-    """What was learnt, a paragraph for each sentence."""
-    return "\n\n".join(model.explain().splitlines())
+    """What was learnt, as a list of sentences."""
+    return "\n".join(f"- {sentence}" for sentence in model.explain().splitlines())
 
 
 def _table(kept: Kept) -> str:
