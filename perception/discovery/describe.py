@@ -17,7 +17,7 @@ from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
 from perception.assignment import quality
 from perception.discovery.face import with_face
-from perception.discovery.height import height, lifted_to
+from perception.discovery.height import height, lifted
 from perception.discovery.polygon import middle, outline, symmetry
 from perception.discovery.propose import Thing
 from perception.discovery.template import Template, align, mean_silhouette
@@ -75,7 +75,7 @@ def _outlined(
 ) -> Description | None:
     """The outline at a height, walls below it down to another, found from poses and they from it, in turn."""
     frames, half = align(things, camera)
-    frames = [lifted_to(frame, camera, z) for frame in frames]
+    frames = [lifted(frame, camera, 0.0, by=z) for frame in frames]
     description = None
     for _ in range(_N_ROUNDS):
         model = _model(name, mean_silhouette(things, camera, frames, z, half), things, base_z)

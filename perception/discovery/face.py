@@ -14,7 +14,7 @@ import numpy as np
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, ObjectModel
 from cobot_lfd.frame import Frame
-from perception.discovery.height import height_of_outline
+from perception.discovery.height import height_of_outline, lifted
 from perception.discovery.polygon import middle, outline
 from perception.discovery.propose import Thing, whole
 from perception.discovery.template import common_silhouette, half_side
@@ -79,9 +79,9 @@ def _upright(
         camera: The camera.
     """
     things = [thing for thing, _ in seen]
-    frames = [_moved(frame, camera, model.z, 0.0) for _, frame in seen]
+    frames = [lifted(frame, camera, model.z, by=-model.z) for _, frame in seen]
     z = height_of_outline(things, frames, camera)
-    frames = [_moved(frame, camera, 0.0, z) for frame in frames]
+    frames = [lifted(frame, camera, 0.0, by=z) for frame in frames]
     corners = outline(common_silhouette(things, camera, frames, z, half_side(things, frames, camera)))
     if corners is None:
         return model
@@ -94,11 +94,6 @@ def _upright(
     except ValueError:  # Not all of it is in the picture.
         return model
     return replace(model, outline=corners, z=z, appearance=face)
-
-
-def _moved(frame: Frame, camera: Camera, z: float, to: float) -> Frame:
-    """A frame at a height as it looks at another."""
-    return Frame(camera.to_plane(camera.project([*frame.position, z]), to), frame.angle)
 
 
 def _varied(picture: Picture, thing: Thing) -> bool:

@@ -54,19 +54,19 @@ def height_of_outline(whole: Sequence[Thing], frames: Sequence[Frame], camera: C
     half = half_side(whole, frames, camera)
 
     def unexplained(z: float) -> float:
-        lifted = [lifted_to(frame, camera, z) for frame in frames]
-        upper = common_silhouette(whole, camera, lifted, z, half)
+        raised = [lifted(frame, camera, 0.0, by=z) for frame in frames]
+        upper = common_silhouette(whole, camera, raised, z, half)
         return sum(
             _unexplained(drawn(upper, thing, camera, frame, _MARGIN), thing, camera, z)
-            for thing, frame in zip(whole, lifted, strict=True)
+            for thing, frame in zip(whole, raised, strict=True)
         )
 
     return _best(unexplained)[0]
 
 
-def lifted_to(frame: Frame, camera: Camera, z: float) -> Frame:
-    """The frame whose image at a height is that of one on the table."""
-    return Frame(camera.to_plane(camera.project([*frame.position, 0.0]), z), frame.angle)
+def lifted(frame: Frame, camera: Camera, z: float, *, by: float) -> Frame:
+    """The frame that is ``by`` [m] higher than one at height ``z`` and looks the same."""
+    return Frame(camera.to_plane(camera.project([*frame.position, z]), z + by), frame.angle)
 
 
 def _best(unexplained: Callable[[float], float]) -> tuple[float, float]:

@@ -78,7 +78,7 @@ def mean_silhouette(
 
 
 def drawn(template: Template, thing: Thing, camera: Camera, frame: Frame, margin: int) -> Thing:
-    """A thing as a picture would show it that had the template's silhouette only, shape by shape alike.
+    """A thing as a picture would show it that had the template's silhouette.
 
     Args:
         template: The silhouette.
