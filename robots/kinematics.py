@@ -25,6 +25,7 @@ _POSTURE_GAIN = 0.8  # share of the way to the home posture per step, where the 
 _MAX_JOINT_STEP = 0.3  # [rad]; far goals are approached in steps for which the Jacobian still speaks
 _DAMPING = 1e-6  # squared singular value below which a direction of the tool counts as lost
 _ROUNDING = 1e-10  # the same, where all that is wanted is a number to divide by
+_MOST_CHECKS = 50  # until their simulation is emptied: shapes of removed bodies stay there, 20 kB a check
 _LEAP = 0.3  # [rad]; neighbours of a path that are farther apart lie on different branches
 
 
@@ -55,7 +56,8 @@ class Kinematics:
 
     def __init__(self, description: RobotDescription) -> None:
         self._client = connect()
-        self._body = RobotBody(self._client, description, self_collision=True, visible=False)
+        self._description = description
+        self._body, self._n_checks = self._loaded(), 0
         self._chain = Chain.of(self._body)
         self._parked = np.array(description.parked)
         self._home = np.array(description.home)
@@ -140,8 +142,15 @@ class Kinematics:
         return np.array(path)
 
     def collisions(self, obstacles: Sequence[Obstacle]) -> CollisionCheck:
-        """A check of postures of this arm among obstacles."""
+        """A check of postures of this arm among obstacles; an earlier one must have ended."""
+        if self._n_checks == _MOST_CHECKS:
+            self._client.resetSimulation()
+            self._body, self._n_checks = self._loaded(), 0
+        self._n_checks += 1
         return CollisionCheck(self._client, self._body, self._chain, obstacles, (self._home, self._parked))
+
+    def _loaded(self) -> RobotBody:
+        return RobotBody(self._client, self._description, self_collision=True, visible=False)
 
     def _solve(self, poses: Sequence[Pose], start: Array) -> "_Found":
         """Search for each pose by itself, all at once; those that have settled wait for the others."""

@@ -1,6 +1,9 @@
 """Collisions of postures: with what stands around, with the arm itself, and of the part that is held."""
 
+import ctypes
+import gc
 from collections.abc import Iterator
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ from cobot_lfd.obstacle import Obstacle
 from cobot_lfd.pose import Pose
 from cobot_lfd.tool import tool_above
 from robots import Kinematics, load_robot, thinned
+from robots.kinematics import _MOST_CHECKS
 
 pytestmark = pytest.mark.simulator
 
@@ -28,6 +32,26 @@ WALL = block("wall", [0.5, 0.1, 0.1], [0.3, 0.01, 0.2])
 def kinematics() -> Iterator[Kinematics]:
     with Kinematics(PANDA) as opened:
         yield opened
+
+
+class MallInfo(ctypes.Structure):
+    """What ``mallinfo2`` returns."""
+
+    _fields_: ClassVar = [(f"before_{i}", ctypes.c_size_t) for i in range(7)] + [
+        ("in_use", ctypes.c_size_t),
+        ("free", ctypes.c_size_t),
+        ("at_top", ctypes.c_size_t),
+    ]
+
+
+def in_use() -> int:
+    """Memory of this process that is in use [byte]."""
+    library = ctypes.CDLL(None)
+    if not hasattr(library, "mallinfo2"):
+        pytest.skip("the C library does not tell how much memory is in use")
+    gc.collect()
+    library.mallinfo2.restype = MallInfo
+    return int(library.mallinfo2().in_use)
 
 
 def posture(kinematics: Kinematics, y: float, height: float) -> Array:
@@ -65,6 +89,18 @@ def test_a_check_leaves_nothing_behind(kinematics: Kinematics) -> None:
         assert check.first_hit(inside) is not None
     with kinematics.collisions([]) as check:
         assert check.first_hit(inside) is None
+
+
+def test_checks_do_not_pile_up_in_memory_and_all_say_the_same(kinematics: Kinematics) -> None:
+    """PyBullet keeps the shapes of removed bodies; glibc says how much memory is in use."""
+    inside = posture(kinematics, 0.1, 0.1)
+    used = []
+    for _ in range(4):
+        for _ in range(_MOST_CHECKS):
+            with kinematics.collisions([TABLE, WALL]) as check:
+                assert check.first_hit(inside) == "the arm or its part would hit the wall"
+        used.append(in_use())
+    assert used[3] - used[1] < 0.2 * _MOST_CHECKS * 20e3  # [byte]
 
 
 def test_a_thinned_path_keeps_its_end() -> None:
