@@ -11,7 +11,7 @@ from cobot_lfd.app.demonstrations.store import list_episodes, load_episode
 from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.launch import Studio
 from cobot_lfd.outcome import Outcome
-from tests.studio_browser import FLAGS, Person, find_chromium, studio_at_work, wait_for
+from tests.studio_browser import FLAGS, PATIENCE, Person, find_chromium, studio_at_work, wait_for
 from tests.studio_pose_age import Ages, Places, ages, begin_watching, end_watching
 
 pytestmark = [
@@ -21,8 +21,9 @@ pytestmark = [
 ]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def browser() -> Iterator[object]:
+    """A browser for each test, so that no page of another one goes on drawing."""
     chromium = find_chromium()
     playwright = pytest.importorskip("playwright.sync_api")
     with playwright.sync_playwright() as started:
@@ -86,7 +87,7 @@ def test_a_person_teaches_the_arm_in_a_browser(
         person.press("Learn [L]")
         person.wait_until(lambda: session.model is not None, "a model")
         person.wait_for_mode(Mode.READY)
-        person.page.get_by_text("Nothing is learnt yet").wait_for(state="hidden", timeout=60_000)
+        person.page.get_by_text("Nothing is learnt yet").wait_for(state="hidden")
         person.page.screenshot(path=tmp_path / "learnt.png")
         said = _listen(studio)
         with person.in_a_hurry():
@@ -121,7 +122,7 @@ def test_one_tab_drags_and_a_closed_tab_loses_nothing(browser: object, tmp_path:
         second.wait_until(lambda: not studio.session.stage.hand.pulls, "the arm rests")
         assert studio.session.mode is Mode.RECORDING  # the second tab is still there
         second.page.close()
-        wait_for(lambda: studio.session.kept.episodes, 60, "the recording is kept", time.sleep)
+        wait_for(lambda: studio.session.kept.episodes, PATIENCE, "the recording is kept", time.sleep)
     [file] = list_episodes(tmp_path)
     assert load_episode(file).verdict.outcome is Outcome.INCOMPLETE
 
@@ -136,7 +137,7 @@ def _discard_and_undo(person: Person) -> None:
 def _look_at_kept(person: Person, folder: Path) -> None:
     """The list, and a replay."""
     person.press("Kept")
-    person.page.get_by_text("done").first.wait_for(timeout=30_000)
+    person.page.get_by_text("done").first.wait_for()
     person.page.screenshot(path=folder / "list.png")
     said = _listen(person.studio)
     with person.in_a_hurry():
