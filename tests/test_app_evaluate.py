@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import scenes
+from cobot_lfd.app.commands.evaluate import evaluate
 from cobot_lfd.app.demonstrations.store import load_demonstrations, load_episode
 from cobot_lfd.app.evaluation.contender import Contender, fit_method, learnt
 from cobot_lfd.app.evaluation.demonstration_bytes import demonstrations_from_bytes, demonstrations_to_bytes
@@ -315,6 +316,14 @@ def test_a_mistake_is_told_before_the_first_episode(
     options = PlanOptions(models=(model_file,), scene=("pick_and_place",), episodes=1)
     with pytest.raises(CobotError, match=message):
         options.model_copy(update=changes).plan()
+
+
+@pytest.mark.parametrize(
+    "beside", [{"seed": 3}, {"episodes": 2}, {"covered": True}, {"sweep": Sweep(light=(2.0,))}]
+)
+def test_a_plan_file_takes_no_options_beside_it(beside: dict[str, Any], tmp_path: Path) -> None:
+    with pytest.raises(CobotError, match="--plan says what is evaluated; leave out"):
+        evaluate(plan=tmp_path / "plan.toml", out=tmp_path / "run", **beside)
 
 
 def test_the_method_in_the_documentation_learns_and_leads(

@@ -77,12 +77,14 @@ def evaluate(
         folder.require_unchanged()
         return _carry_out(folder, where, json=json)
     require_positive("episodes", episodes)
-    if plan is not None and (models or scene or method or camera):
-        raise CobotError("--plan says what is evaluated; leave out models, --scene, --method and --camera.")
-    options = PlanOptions.read(plan) if plan is not None else PlanOptions(
+    options = PlanOptions(
         models=models, scene=scene, robot=robot, method=method, demos=demos,
         episodes=episodes, seed=seed, covered=covered, camera=camera, sweep=sweep,
     )  # fmt: skip
+    if plan is not None:
+        if options != PlanOptions(scene=()):
+            raise CobotError("--plan says what is evaluated; leave out models and options that say so, too.")
+        options = PlanOptions.read(plan)
     return _carry_out(_begin(options, out), where, json=json)
 
 
