@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from cobot_lfd.app.studio.audience import Mode
 from cobot_lfd.app.studio.launch import Studio, open_studio
@@ -76,6 +75,14 @@ def studio_at_work(folder: Path, seed: int) -> Iterator[Studio]:
 
 WINDOW = {"width": 900, "height": 480}  # [px]
 PATIENCE = 300.0  # [s] for what happens at once, but on a machine that is busy with other work
+PROJECTION = """(point) => {
+    const {camera, canvas, nodeRefFromName} = window.__viserMutable;
+    const handle = nodeRefFromName['/handle'];
+    const place = handle.position.clone().set(...point).applyMatrix4(handle.parent.matrixWorld);
+    const seen = place.project(camera);
+    const frame = canvas.getBoundingClientRect();
+    return [frame.left + frame.width * (1 + seen.x) / 2, frame.top + frame.height * (1 - seen.y) / 2];
+}"""
 FAST = 4.0  # times real time, where the arm moves by itself and nobody needs to watch
 
 
@@ -90,6 +97,7 @@ class Person:
         self.studio = studio
         self.session = studio.session
         self.hurried = 0.0
+        self._nudge = 0.5  # [px]
         # The browser's library is imported only where there is a browser, so its type is not named here.
         self.page = browser.new_page(viewport=WINDOW)  # type: ignore[attr-defined]
         self.page.set_default_timeout(1000 * PATIENCE)
@@ -139,21 +147,16 @@ class Person:
         return np.array(self.session.stage.shown_tool)
 
     def pixel(self, point: Array) -> tuple[float, float]:
-        """Where a point of the world is on the page [px]."""
-        camera = self.studio.server.get_clients()[self.tab].camera
-        w, x, y, z = camera.wxyz
-        local = Rotation.from_quat([x, y, z, w]).inv().apply(point - np.asarray(camera.position))
-        focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
-        u, v = focal * local[:2] / local[2] + 0.5 * np.array([camera.image_width, camera.image_height])
+        """Where a point of the world is on the page [px], by the page's own camera: the server's may lag."""
+        u, v = self.page.evaluate(PROJECTION, np.asarray(point).tolist())
         return float(u), float(v)
 
     def drag_to(self, goal: Array, steps: int = 25, *, let_go: bool = True) -> None:
         """Drag the handle until the tool is over a place on the table [m], shape (2,)."""
-        mouse, tool = self.page.mouse, self.tool()
-        self.wait_until(lambda: self._sees_handle_at(tool), "the page shows the tool where it is")
+        mouse = self.page.mouse
+        self.wait_until(self._meets_handle, "the mouse is over the handle")
+        tool = self.tool()
         place = self.pixel(tool)
-        mouse.move(*place)
-        self.wait_until(self._is_over_handle, "the mouse is over the handle")
         mouse.down()
         way = np.array([*(goal - tool[:2]), 0.0])
         for share in 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, steps)):
@@ -164,12 +167,13 @@ class Person:
             self._correct(goal, np.array(place))
             mouse.up()
 
-    def _sees_handle_at(self, tool: Array) -> bool:
-        """Whether the page's handle is at a place [m], so that the mouse meets it there."""
-        place = self.page.evaluate(
-            "() => window.__viserMutable.nodeRefFromName['/handle'].position.toArray()"
-        )
-        return bool(np.linalg.norm(np.array(place) - tool) < 0.005)
+    def _meets_handle(self) -> bool:
+        """Move the mouse to where the tool is now; tell whether the page knew it over the handle before."""
+        known = self._is_over_handle()
+        self._nudge = -self._nudge  # A mouse that does not move is not looked for again.
+        u, v = self.pixel(self.tool())
+        self.page.mouse.move(u + self._nudge, v)
+        return known and self._is_over_handle()
 
     def _is_over_handle(self) -> bool:
         """Whether the page knows that the mouse is over something that can be dragged."""
