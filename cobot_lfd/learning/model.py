@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -130,14 +130,14 @@ class TaskParameterisedGMM:
             "reg_covar": reg_covar,
             "n_init": n_init,
         }
-        given = {name: value for name, value in asked.items() if value is not None}
+        given: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
         if given and not chosen.fits_mixtures:
             warnings.warn(
                 f"{', '.join(given)} has no effect: these settings fit no Gaussian mixture; leave it out, or "
                 "take method='paper' or 'conventional'.",
                 stacklevel=2,
             )
-        em: EMSettings = replace(chosen.em, **given)  # type: ignore[arg-type]  # values of several types
+        em: EMSettings = replace(chosen.em, **given)
         chosen = replace(chosen, em=em)
         if frame_kinds is not None:
             chosen = replace(chosen, kinds=dict(frame_kinds))

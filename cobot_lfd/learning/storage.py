@@ -23,13 +23,13 @@ def save(path: Path, value: object) -> None:
 
     The file appears whole or not at all: it is written beside its place and then renamed.
     """
-    arrays: dict[str, Array] = {}
+    arrays: dict[str, Any] = {}
     tree = _describe(value, arrays)
     header = json.dumps({"format": FORMAT, "version": VERSION, "model": tree})
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(path.name + ".partial")
     with partial.open("wb") as file:
-        np.savez_compressed(file, header=np.array(header), **arrays)  # type: ignore[arg-type]  # str keys of arrays
+        np.savez_compressed(file, header=np.array(header), **arrays)
         file.flush()
         os.fsync(file.fileno())
     partial.replace(path)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -75,7 +76,7 @@ TABLE_4 = {
 
 def hard_generators() -> dict[str, list[SyntheticTask]]:
     """Tasks 1-3 where frames are turned little, or seen badly."""
-    changes: Mapping[str, Mapping[str, float]] = {
+    changes: Mapping[str, Mapping[str, Any]] = {
         "slots 10 %": {"slot": 0.10},
         "slots 25 %": {},
         "orientation-less frames turned within ±45°": {"loose_spread": np.radians(45)},
@@ -84,10 +85,7 @@ def hard_generators() -> dict[str, list[SyntheticTask]]:
         "angles noisy by 5°": {"angle_noise": np.radians(5)},
         "angles noisy by 10°": {"angle_noise": np.radians(10)},
     }
-    generators = {
-        name: [replace(TASKS[i], **change) for i in (1, 2, 3)]  # type: ignore[arg-type]  # floats only
-        for name, change in changes.items()
-    }
+    generators = {name: [replace(TASKS[i], **change) for i in (1, 2, 3)] for name, change in changes.items()}
     generators["paper-like"] = [paper_like(TASKS[i]) for i in (1, 2, 3)]
     generators["paper-like, bell speed and waits"] = [human_timing(paper_like(TASKS[i])) for i in (1, 2, 3)]
     return generators

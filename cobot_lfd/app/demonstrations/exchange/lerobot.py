@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,12 +47,8 @@ def export_lerobot(episodes: Sequence[RecordedEpisode], folder: Path, task: str)
         CobotError: If pyarrow is not installed.
         DataError: If the folder is there already or cannot be written, or the episodes differ in rate.
     """
-    try:
-        import pyarrow  # noqa: F401 -- asked for before anything is written
-    except ImportError as error:
-        raise CobotError(
-            "writing LeRobot data needs pyarrow; install it: pip install 'cobot-lfd[lerobot]'."
-        ) from error
+    if find_spec("pyarrow") is None:  # Asked for before anything is written.
+        raise CobotError("writing LeRobot data needs pyarrow; install it: pip install 'cobot-lfd[lerobot]'.")
     rows, rate = _rows(episodes)
     if folder.exists():
         raise DataError(f"{folder} is there already; name a new folder.")
