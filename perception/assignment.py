@@ -6,14 +6,9 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from cobot_lfd.detection import ObjectModel
-from perception.outline_fit import OutlineFit
+from perception.outline_fit import OutlineFit, quality
 
 _IMPOSSIBLE = 1e6  # Cost of giving a model a region that it does not fit.
-
-
-def quality(fit: OutlineFit) -> float:
-    """How well a fit is supported: much of the outline, found close to where it should be."""
-    return fit.found / (0.1 + fit.residual)
 
 
 def assign(

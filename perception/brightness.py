@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from perception.picture import Picture
+from perception.robust import robust_deviation
 
 _EVERY = 8  # Rows from one to the next in which noise is measured.
 _LEAST_NOISE = 0.4  # What rounding leaves at the least [0..255].
@@ -24,4 +25,4 @@ def brightness(picture: Picture) -> NDArray[np.uint8]:
 def noise_of(image: NDArray[Any]) -> float:
     """Standard deviation of the noise of an image's pixels [0..255], from neighbours that should agree."""
     rows = image[::_EVERY].astype(np.float32)
-    return max(_LEAST_NOISE, 1.4826 / 2**0.5 * float(np.median(np.abs(np.diff(rows, axis=1)))))
+    return max(_LEAST_NOISE, robust_deviation(np.diff(rows, axis=1)) / 2**0.5)

@@ -1,5 +1,7 @@
 """A first guess of an object's pose from the region that has its colour."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cobot_lfd.arrays import Array
@@ -23,34 +25,82 @@ _AGREEMENT = 3.0  # Difference in reach up to which two shapes agree [px].
 _N_TIMES_WORSE = 2.0  # A pose that fits this many times worse than the best one is not worth a try.
 
 
-def guess_poses(
-    region: Region, model: ObjectModel, camera: Camera, scale: int, *, covered: bool = False
-) -> list[Frame]:
-    """The poses in which the object's image is most like a region, the likeliest first.
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """A region compared with an object's image at all angles.
 
     Two convex shapes are the same if they reach equally far in every direction (their support functions
-    agree). The shape is compared at all angles, each time moved to where it agrees best.
+    agree).
 
-    Args:
-        region: What has the object's colour.
-        model: The object.
+    Attributes:
+        excess: How much farther the region reaches than the object at each of m angles, in each of n
+            directions [px], shape (m, n); direction k + n / 2 is opposite to direction k.
+        angles: The angles [rad], shape (m,).
+        normals: The directions, unit vectors in the picture, shape (n, 2).
+        reach: How far the region reaches from its middle at the most [px].
+        start: Where the object was put, column and row [px], shape (2,).
+        z: Height of the object's outline [m].
         camera: The camera.
-        scale: Side of the squares of pixels that the region was found in [px].
-        covered: Whether a part of the object may be covered, so that the region reaches less far.
     """
-    directions = np.linspace(0.0, 2 * np.pi, _N_DIRECTIONS, endpoint=False)
-    normals = np.column_stack([np.cos(directions), np.sin(directions)])
-    reach = (region.hull @ normals.T).max(axis=0) + 0.5 * scale
-    middle = camera.to_plane(region.centroid, 0.5 * (model.z + model.base_z))
-    angles = np.arange(0.0, 2 * np.pi / model.symmetry - 1e-9, _ANGLE_STEP)
-    corners = _turned(corners_in_world(model, Frame(np.zeros(2), 0.0)), angles, middle)
-    excess = reach - (camera.project(corners) @ normals.T).max(axis=1)
-    shifts, misfits = _align_covered(excess, normals) if covered else _align(excess, normals)
-    start = camera.project([*middle, model.z])
-    return [
-        Frame(camera.to_plane(start + shifts[i, j], model.z), float(angles[i]))
-        for i, j in _likeliest(shifts, misfits, _MOST_COVERED if covered else _MOST_POSES)
-    ]
+
+    excess: Array
+    angles: Array
+    normals: Array
+    reach: float
+    start: Array
+    z: float
+    camera: Camera
+
+    @classmethod
+    def of(cls, region: Region, model: ObjectModel, camera: Camera, scale: int) -> "Comparison":
+        """Compare.
+
+        Args:
+            region: What has the object's colour.
+            model: The object.
+            camera: The camera.
+            scale: Side of the squares of pixels that the region was found in [px].
+        """
+        directions = np.linspace(0.0, 2 * np.pi, _N_DIRECTIONS, endpoint=False)
+        normals = np.column_stack([np.cos(directions), np.sin(directions)])
+        reach = (region.hull @ normals.T).max(axis=0) + 0.5 * scale
+        middle = camera.to_plane(region.centroid, 0.5 * (model.z + model.base_z))
+        angles = np.arange(0.0, 2 * np.pi / model.symmetry - 1e-9, _ANGLE_STEP)
+        corners = _turned(corners_in_world(model, Frame(np.zeros(2), 0.0)), angles, middle)
+        return cls(
+            excess=reach - (camera.project(corners) @ normals.T).max(axis=1),
+            angles=angles,
+            normals=normals,
+            reach=float(np.max(reach - normals @ region.centroid)),
+            start=camera.project([*middle, model.z]),
+            z=model.z,
+            camera=camera,
+        )
+
+    @property
+    def too_wide(self) -> float:
+        """How far the region must stick out of the object's image, wherever that is and however turned [px].
+
+        What is wider by w in some direction sticks out by w / 2 at one end at least. What the step from angle
+        to angle may hide is taken off.
+        """
+        opposite = np.roll(self.excess, len(self.normals) // 2, axis=1)
+        wider = 0.5 * (self.excess + opposite).max(axis=1)
+        return float(wider.min() - _ANGLE_STEP * self.reach)
+
+    def poses(self, *, covered: bool = False) -> list[Frame]:
+        """The poses in which the object's image is most like the region, the likeliest first.
+
+        At each angle the image is moved to where it agrees best.
+
+        Args:
+            covered: Whether a part of the object may be covered, so that the region reaches less far.
+        """
+        shifts, misfits = (_align_covered if covered else _align)(self.excess, self.normals)
+        return [
+            Frame(self.camera.to_plane(self.start + shifts[i, j], self.z), float(self.angles[i]))
+            for i, j in _likeliest(shifts, misfits, _MOST_COVERED if covered else _MOST_POSES)
+        ]
 
 
 def _likeliest(shifts: Array, misfits: Array, most: int) -> list[tuple[int, int]]:

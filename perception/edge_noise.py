@@ -20,10 +20,10 @@ from perception.silhouette import Contour
 
 _MIXED_WITHOUT_STAIRS = 2 / 3  # Mean of 4 a (1 - a) over an edge, where the covered share a is evenly spread.
 _MIXED_BY_BLUR = 0.1  # Excess of that mean from which on a blur hides what the renderer did.
-_LEAST_NOISE = 0.03  # What light, rounding and the lens leave at the least [px].
+_LEAST_NOISE = 0.01  # What light, rounding and the lens leave at the least [px].
 _SPREAD = 3.0  # Number of points over which one pixel's noise is spread.
 _REACH = 12  # Of the reciprocal grid; beyond, waves are weak.
-_FEW = 1.7  # Stairs along an edge.
+_FEW = 2.0  # Stairs along an edge.
 _TURN = 0.6  # Waves along an edge that turn it most.
 _SHORTEST = 2.0  # Waves shorter than that [px] count as noise,
 _SHORT_WAVES = 0.006  # of this variance [px²]: so much is missing in the sum, and hangs together less.

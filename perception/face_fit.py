@@ -12,10 +12,10 @@ from perception.blurred_picture import BlurredPicture
 from perception.face import BLURS, Face
 from perception.face_state import FaceState
 from perception.rigid import on_plane
+from perception.robust import robust_deviation, tukey_weights
 
 _N_STEPS = 6  # At each blur, at the most.
 _SMALL_STEP = 0.003  # From which on no further step is taken [px].
-_TUKEY = 4.685
 _LEAST_NOISE = 2.0  # Of brightness, in any case [0..255].
 _LEAST_WEIGHT = 0.2  # From here on a pixel counts as one that shows the face.
 _N_EVEN = (4, 4, 6)  # Unknowns at each blur where the light is even; at first it is a factor only.
@@ -125,8 +125,8 @@ def _seen(picture: BlurredPicture, face: Face, state: FaceState, i: int) -> tupl
 
 def _weights(errors: Array, usable: NDArray[np.bool_]) -> Array:
     """Tukey's biweight, shape (n,); 0 for what does not count."""
-    scale = max(1.4826 * float(np.median(np.abs(errors[usable]))), _LEAST_NOISE)
-    return np.where(usable, np.clip(1.0 - (errors / (_TUKEY * scale)) ** 2, 0.0, None) ** 2, 0.0)
+    scale = max(robust_deviation(errors[usable]), _LEAST_NOISE)
+    return np.where(usable, tukey_weights(errors, scale), 0.0)
 
 
 def _judged(picture: BlurredPicture, face: Face, state: FaceState, free: int) -> FaceFit:

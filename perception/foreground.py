@@ -12,7 +12,8 @@ _SCALE = 4  # Side of the squares of pixels that are averaged first [px].
 _LEAST_EDGE = 8.0  # Difference between neighbouring squares that may be more than the table's noise [0..255].
 _N_NOISE = 6.0  # The same in standard deviations of that noise.
 _MARGIN = 3  # Squares around what was found.
-_MOST = 0.6  # Of the picture; beyond, all of it is taken.
+_LEAST_FILLED = 0.4  # Of a rectangle; a shadow's edge right across the picture fills less.
+_SMALLEST_PART = 24  # Longer side from which on such a rectangle is cut in two [squares].
 
 Part = tuple[slice, slice]
 """Rows and columns of a part of a picture."""
@@ -26,14 +27,35 @@ def foreground_parts(grey: NDArray[np.uint8]) -> list[Part]:
     typical = float(np.median(edges))  # Largest less smallest of nine noisy values: about 3 sigma.
     mask = (edges > typical + max(_LEAST_EDGE, _N_NOISE * typical / 3.0)).astype(np.uint8)
     mask = np.asarray(cv2.dilate(mask, np.ones((2 * _MARGIN + 1,) * 2, np.uint8)), np.uint8)
-    count, _, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    boxes = [(int(y), int(y + h), int(x), int(x + w)) for x, y, w, h, _ in stats[1:count]]
-    if sum((bottom - top) * (right - left) for top, bottom, left, right in boxes) > _MOST * mask.size:
-        return [(slice(0, height), slice(0, width))]
+    count, labels, _, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+    squares = [part for i in range(1, count) for part in _tight(np.asarray(labels) == i)]
     return [
         (slice(top * _SCALE, min(bottom * _SCALE, height)), slice(left * _SCALE, min(right * _SCALE, width)))
-        for top, bottom, left, right in boxes
+        for top, bottom, left, right in squares
     ]
+
+
+def _tight(mask: NDArray[np.bool_]) -> list[tuple[int, int, int, int]]:
+    """Rectangles around what a mask holds, without much else: top, bottom, left and right of each [squares].
+
+    One that holds much else is cut where there is least to cut, in the middle half of its longer side; the
+    parts overlap there, so that what is cut is seen from both.
+    """
+    left, top, width, height = cv2.boundingRect(mask.astype(np.uint8))
+    inside = mask[top : top + height, left : left + width]
+    if max(height, width) < _SMALLEST_PART or inside.mean() > _LEAST_FILLED:
+        return [(top, top + height, left, left + width)]
+    axis = int(width > height)
+    length = (height, width)[axis]
+    middle = np.arange(length // 4, length - length // 4)
+    cut = (top, left)[axis] + int(middle[np.argmin(inside.sum(axis=1 - axis)[middle])])
+    halves = []
+    for kept in (slice(0, cut + _MARGIN), slice(cut - _MARGIN, None)):
+        half = np.zeros_like(mask)
+        where = (kept, slice(None)) if axis == 0 else (slice(None), kept)
+        half[where] = mask[where]
+        halves += _tight(half)
+    return halves
 
 
 def without(parts: Iterable[Part], contour: Array) -> list[Part]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cobot_lfd.arrays import Array
 from perception.picture import Picture
 
-_COLOURS_OFF = 1.0  # Of a face or a shadow as a whole [0..255].
+_COLOURS_OFF = 0.73  # Of a face or a shadow as a whole [0..255].
 _SHADE = 0.3  # Standard deviation of p + q from 1, by shadows and the shade of faces.
 
 

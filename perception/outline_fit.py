@@ -1,5 +1,6 @@
 """The pose of an object whose outline is known, fitted to the edges in the picture."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from perception.edge_noise import EdgeNoise, weighted_step
 from perception.edges import EdgeOffsets, measure_edges
 from perception.mixture import Mixture
 from perception.picture import Picture
+from perception.robust import robust_deviation, tukey_weights
 from perception.silhouette import Contour, silhouette_hull, visible_contour
 
 # How far from the outline edges are looked for, step after step [px]. Far at first, to make up for a rough
@@ -23,6 +25,7 @@ _COARSE_SPACING = 3.0  # Of those few points [px], or this part of a small objec
 _COARSE_PART = 0.12
 _SMALLEST_REACH = 2.0
 _FEWEST_POINTS = 12
+_SURELY_FOUND, _SURE_RESIDUAL = 0.93, 0.5  # Share of the outline and residual [px] beyond doubt.
 _LEAST_WEIGHT = 0.2  # Of an edge, by Tukey's biweight, so that it counts as part of the outline.
 _LEAST_SCALE = 0.25  # The spread that edges are allowed to have in any case [px].
 _RIDGE = 1e-3 * np.eye(3)  # Keeps a direction that no edge tells anything about where it is.
@@ -48,6 +51,11 @@ class OutlineFit:
     residual: float
 
 
+def quality(fit: "OutlineFit | _Aligned") -> float:
+    """How well a fit is supported: much of the outline, found close to where it should be."""
+    return fit.found / (0.1 + fit.residual)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Measurement:
     """An outline at a pose, how it depends on the pose, and the edges that were found along it."""
@@ -58,24 +66,56 @@ class _Measurement:
     edges: EdgeOffsets
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Aligned:
+    """An outline that lies on the edges but for a last step, and which of them belong to it, shape (n,)."""
+
+    seen: _Measurement
+    chosen: NDArray[np.bool_]
+    residual: float
+
+    @property
+    def found(self) -> float:
+        return float(self.chosen.mean())
+
+    @property
+    def beyond_doubt(self) -> bool:
+        return self.found > _SURELY_FOUND and self.residual < _SURE_RESIDUAL
+
+
 def fit_outline(
-    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, start: Frame
+    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, starts: Sequence[Frame]
 ) -> OutlineFit | None:
     """Move an object's outline until it lies on the edges in the picture.
 
-    Gauss-Newton with Tukey's weights brings it there; a last step weighs the edges by how their errors hang
-    together, which also gives the covariance.
+    Gauss-Newton with Tukey's weights brings it there from each start, the later ones being tried only while
+    no result is beyond doubt. The best takes a last step, which weighs the edges by how their errors hang
+    together and also gives the covariance.
 
     Args:
         picture: The picture.
         camera: The camera that took it.
         model: The object.
         mixture: Tells the object from the table.
-        start: Where the object is, to a few pixels.
+        starts: Where the object may be, to a few pixels.
 
     Returns:
-        The fit; None if there are too few edges near the start.
+        The best fit; None if there are too few edges near every start.
     """
+    best: _Aligned | None = None
+    for start in starts:
+        aligned = _align(picture, camera, model, mixture, start)
+        if aligned is not None and (best is None or quality(aligned) > quality(best)):
+            best = aligned
+        if best is not None and best.beyond_doubt:
+            break
+    return None if best is None else _finish(best, bias=mixture.table_error * _LAST_REACH)
+
+
+def _align(
+    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, start: Frame
+) -> _Aligned | None:
+    """The outline on the edges near a start; None if there are too few."""
     width = float(np.ptp(silhouette_hull(model, start, camera), axis=0).min())
     widest = max(0.3 * width, _SMALLEST_REACH)
     coarse = min(_COARSE_PART * width, _COARSE_SPACING)
@@ -93,7 +133,11 @@ def fit_outline(
         if np.abs(seen.jacobian @ step).max() < _NEAR:
             break
     seen = _measure(picture, camera, model, mixture, frame, min(_LAST_REACH, widest))
-    return None if seen is None else _finish(seen, bias=mixture.table_error * _LAST_REACH)
+    if seen is None:
+        return None
+    step, chosen = _robust_step(seen)
+    residuals = seen.edges.offsets[chosen] - seen.jacobian[chosen] @ step
+    return _Aligned(seen, chosen, float(np.sqrt(np.mean(residuals**2))))
 
 
 def _measure(
@@ -115,25 +159,25 @@ def _measure(
     return _Measurement(frame, contour, _jacobian(contour, frame, camera), edges)
 
 
-def _finish(seen: _Measurement, bias: float) -> OutlineFit:
+def _finish(aligned: _Aligned, bias: float) -> OutlineFit:
     """The last step: the edges that belong to the outline, weighted by their noise.
 
     Args:
-        seen: The edges.
+        aligned: The outline and its edges.
         bias: How far light and shadow may displace an edge as a whole [px]: an edge's place is the sum of the
             shares of the object across it, so they are off by an error of the share times the way.
     """
-    step, chosen = _robust_step(seen)
-    jacobian, offsets = seen.jacobian[chosen], seen.edges.offsets[chosen]
-    residual = float(np.sqrt(np.mean((offsets - jacobian @ step) ** 2)))
-    noise = EdgeNoise.seen_in(seen.edges.mixed[chosen], residual**2, bias)
-    step, covariance = weighted_step(seen.contour[chosen], jacobian, offsets, noise, _RIDGE)
+    seen, chosen = aligned.seen, aligned.chosen
+    noise = EdgeNoise.seen_in(seen.edges.mixed[chosen], aligned.residual**2, bias)
+    step, covariance = weighted_step(
+        seen.contour[chosen], seen.jacobian[chosen], seen.edges.offsets[chosen], noise, _RIDGE
+    )
     return OutlineFit(
         _moved(seen.frame, step),
         covariance,
-        found=float(chosen.mean()),
+        found=aligned.found,
         empty=float(seen.edges.empty.mean()),
-        residual=residual,
+        residual=aligned.residual,
     )
 
 
@@ -158,8 +202,7 @@ def _robust_step(seen: _Measurement) -> tuple[Array, NDArray[np.bool_]]:
         weighted = jacobian * weights[:, None]
         step = np.linalg.solve(weighted.T @ jacobian + _RIDGE, weighted.T @ offsets)
         residuals = offsets - jacobian @ step
-        scale = max(1.4826 * float(np.median(np.abs(residuals))), _LEAST_SCALE)
-        weights = np.clip(1.0 - (residuals / (4.685 * scale)) ** 2, 0.0, None) ** 2
+        weights = tukey_weights(residuals, max(robust_deviation(residuals), _LEAST_SCALE))
     chosen = valid.copy()
     chosen[valid] = weights > _LEAST_WEIGHT
     return np.asarray(step, dtype=np.float64), chosen

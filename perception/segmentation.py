@@ -12,7 +12,8 @@ from cobot_lfd.detection import ObjectModel
 from perception.brightness import noise_of
 from perception.picture import Picture
 from perception.region import Region, connected_regions
-from perception.table import chromaticity, table_colour
+from perception.robust import robust_deviation
+from perception.table import chromaticity, shares, table_colour
 
 _LEAST_SHARE = (
     0.4  # Of the colour difference between table and object: from here on a pixel may be the object.
@@ -26,9 +27,6 @@ _EVERY = 5  # Pixels from one to the next where a part of them is enough.
 _BLACK = 0.02  # No ground is darker.
 _LEAST_NOISE = 0.7  # What rounding leaves at the least [0..255].
 _N_NOISE = 5.0  # Standard deviations of the table's colour that never count as an object.
-
-_PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
-"""Two axes of the plane in which the shares of red, green and blue lie, shape (3, 2)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,18 +97,18 @@ def _expected(model: ObjectModel, table: Array) -> _Look:
 
 def _label(pixels: Array, table: Array, looks: Sequence[_Look]) -> NDArray[np.int_]:
     """For each pixel the number of the look that it has, or -1 for none, shape (n,)."""
-    difference = (chromaticity(pixels) - chromaticity(table)) @ _PLANE
+    difference = shares(pixels) - shares(table)
     best = np.full(len(pixels), _MOST_DEVIATION)
     labels = np.full(len(pixels), -1)
     pale = []
     for i, look in enumerate(looks):
-        expected = (chromaticity(np.array(look.colour)) - chromaticity(table)) @ _PLANE
+        expected = shares(np.array(look.colour)) - shares(table)
         if look.brightness is not None and np.linalg.norm(expected) < _PALE:
             pale.append((i, expected, look.brightness))
             continue
         expected /= expected @ expected
         share = difference @ expected
-        noise = 1.4826 * float(np.median(np.abs(share[::_EVERY])))
+        noise = robust_deviation(share[::_EVERY])
         foreground = np.flatnonzero(share > max(_LEAST_SHARE, _N_NOISE * noise))
         across = np.abs(difference[foreground] @ [-expected[1], expected[0]])
         deviation = across / share[foreground]
@@ -132,7 +130,7 @@ def _label_pale(
     """Label the pixels that are left and more like a pale object than like the table, in light or shadow."""
     rest = np.flatnonzero(labels < 0)
     brightness = np.log(np.maximum(pixels[rest].sum(axis=1), 1.0) / table.sum())
-    noise = 1.4826 * np.median(np.abs(difference[::_EVERY]))
+    noise = robust_deviation(difference[::_EVERY])
     best = np.full(len(rest), _MOST_UNLIKELY)
     for i, expected, expected_brightness in pale:
         spread = 0.4 * np.linalg.norm(expected) + noise

@@ -11,8 +11,8 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
-from perception.assignment import assign, quality
-from perception.coarse_pose import guess_poses
+from perception.assignment import assign
+from perception.coarse_pose import Comparison
 from perception.mixture import Mixture
 from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture, check_picture
@@ -28,7 +28,6 @@ _MOST_EMPTY = 0.13
 _MOST_BETWEEN = 0.3  # The same where something lies across an object, whose colour may be like the table's.
 _MOST_RESIDUAL = 1.0  # Root mean square distance of the edges from the outline [px].
 _MOST_DEVIATION = 0.003  # Standard deviation of the position that is still worth telling [m].
-_SURELY_FOUND, _SURE_RESIDUAL = 0.93, 0.5  # Share of the outline and residual [px] beyond doubt.
 _N_REGIONS = 4  # The largest regions are tried.
 _COARSE_SIZE = 5.0  # Least size of an object in the picture in which regions are looked for [px].
 
@@ -121,29 +120,17 @@ def _try(
         return f"what has its colour has {100 * region.area / expected:.0f} % of its size; {_where(region)}."
     if not region.right_colour:
         return f"what is most like it in colour differs by {100 * region.unlikeness:.0f} %."
+    comparison = Comparison.of(region, model, camera, segmentation.scale)
+    if comparison.too_wide > segmentation.scale + _MOST_RESIDUAL:
+        return _stuck_out(comparison.too_wide)
     mixture = Mixture.of(region.colour, segmentation.table, segmentation.noise)
     fault = ""
     for covered in (False, True):
-        starts = guess_poses(region, model, camera, segmentation.scale, covered=covered)
-        best = _best_fit(picture, camera, model, mixture, starts)
+        best = fit_outline(picture, camera, model, mixture, comparison.poses(covered=covered))
         fault = _fault(model, camera, region, segmentation.scale, best, most_empty)
         if best is not None and not fault:
             return best
     return fault
-
-
-def _best_fit(
-    picture: Picture, camera: Camera, model: ObjectModel, mixture: Mixture, starts: Sequence[Frame]
-) -> OutlineFit | None:
-    """The best fit from several starts; the later ones are tried only while none is beyond doubt."""
-    best: OutlineFit | None = None
-    for start in starts:
-        fit = fit_outline(picture, camera, model, mixture, start)
-        if fit is not None and (best is None or quality(fit) > quality(best)):
-            best = fit
-        if best is not None and best.found > _SURELY_FOUND and best.residual < _SURE_RESIDUAL:
-            break
-    return best
 
 
 def _where(region: Region) -> str:
@@ -169,8 +156,12 @@ def _fault(
         return f"too little of its outline is seen to tell where it is; {_where(region)}."
     beyond = _sticks_out(region, silhouette_hull(model, fit.frame, camera))
     if beyond > scale + _MOST_RESIDUAL:
-        return f"what has its colour sticks out of its outline by {beyond:.0f} px; it is something else."
+        return _stuck_out(beyond)
     return ""
+
+
+def _stuck_out(beyond: float) -> str:
+    return f"what has its colour sticks out of its outline by {beyond:.0f} px; it is something else."
 
 
 def _sticks_out(region: Region, hull: Array) -> float:

@@ -96,21 +96,20 @@ def _covers(pixels: Array, corners: Array) -> NDArray[np.bool_]:
     A place is covered by a polygon if the line from it to the right crosses the polygon's edges an odd number
     of times. The polygons are the top, the foot and the walls.
     """
-    starts, ends, belongs = _polygons(len(corners) // 2)
+    n = len(corners) // 2
+    starts, ends = _edges(n)
     (x0, y0), (x1, y1) = corners[starts].T, corners[ends].T
     x, y = pixels.T[..., None]
     slope = (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0)
     crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
-    n_crossed = crosses.astype(np.float32) @ belongs
+    n_crossed = crosses.astype(np.float32) @ _polygons(n)
     return np.asarray((n_crossed % 2 == 1).any(axis=1))
 
 
 @lru_cache(maxsize=64)
-def _polygons(n: int) -> tuple[NDArray[np.int_], NDArray[np.int_], NDArray[np.float32]]:
-    """The sides of a prism's top, foot and walls: indices of their ends; the polygon of each, (k, 2 + n)."""
-    after = np.roll(np.arange(n), -1)
-    walls = np.column_stack([np.arange(n), after, n + after, n + np.arange(n)])
-    starts = np.concatenate([np.arange(2 * n), walls.ravel()])
-    ends = np.concatenate([after, n + after, np.roll(walls, -1, axis=1).ravel()])
-    polygon = np.concatenate([np.repeat([0, 1], n), np.repeat(np.arange(2, 2 + n), 4)])
-    return starts, ends, np.eye(2 + n, dtype=np.float32)[polygon]
+def _polygons(n: int) -> NDArray[np.float32]:
+    """Which of a prism's edges belong to its top, its foot and each of its walls, shape (3 n, 2 + n)."""
+    edge, walls = np.arange(n), np.eye(n, dtype=np.float32)
+    ends = np.zeros((3 * n, 2), np.float32)
+    ends[edge, 0] = ends[n + edge, 1] = 1.0
+    return np.column_stack([ends, np.vstack([walls, walls, walls + np.roll(walls, 1, axis=0)])])

@@ -8,12 +8,23 @@ from cobot_lfd.arrays import Array
 _N_BINS = 48  # Fine enough to part the table from a pale object, coarse enough to hold the table's noise.
 _LEAST_BRIGHT = 0.1  # Share of the picture that must tell a colour.
 _DARKEST = 12.0  # Mean of red, green, blue below which a pixel tells no colour [0..255].
+_PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
+"""Two axes of the plane in which the shares of red, green and blue lie, shape (3, 2)."""
 
 
 def chromaticity(colours: Array) -> Array:
     """Red, green, blue as shares of their sum, shape (..., 3); black has none and counts as grey."""
     total = np.asarray(colours @ np.ones(3))[..., None]
     return np.asarray(np.where(total > 0, colours / np.maximum(total, 1e-9), 1 / 3))
+
+
+def shares(colours: Array) -> Array:
+    """Colours, shape (..., 3), as places in the plane of their shares of red, green and blue, (..., 2).
+
+    Grey, and black, which has no shares, lie in its origin.
+    """
+    placed = colours @ np.column_stack([_PLANE, np.ones(3)])
+    return np.asarray(placed[..., :2] / np.maximum(placed[..., 2:], 1e-9))
 
 
 def table_colour(colours: Array) -> Array | None:

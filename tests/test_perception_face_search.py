@@ -30,6 +30,17 @@ def test_an_empty_table_is_like_no_face() -> None:
     assert not SEARCH.poses(image, CAMERA, [(slice(100, 300), slice(100, 300))], 3)
 
 
+def test_a_shadow_across_the_picture_is_followed_and_not_framed() -> None:
+    row, column = np.indices(TABLE.shape[:2])
+    shadow = np.where((row < column)[..., None], TABLE // 2, TABLE).astype(np.uint8)
+    parts = foreground_parts(brightness(shadow))
+    covered = np.zeros(TABLE.shape[:2], bool)
+    for part in parts:
+        covered[part] = True
+    assert covered[row == column].all()
+    assert covered.mean() < 0.4
+
+
 def test_what_is_explained_is_looked_at_no_more() -> None:
     left, right = Frame(np.array([0.47, 0.1]), 0.3), Frame(np.array([0.5, -0.1]), 2.0)
     image = brightness(picture_of({"a": ("small", left), "b": ("small", right)}))

@@ -10,10 +10,9 @@ simulator's poses; times are processor time of a core, rendering excluded. In th
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from time import process_time
 
@@ -22,6 +21,7 @@ import numpy as np
 import tyro
 
 from cobot_lfd.app.calibrate import calibrate
+from cobot_lfd.app.evaluation.workers import WorkerProcesses
 from cobot_lfd.app.sought import sought
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import NotSeen
@@ -80,7 +80,7 @@ def main(
     print("| " + " | ".join([*head, "error² / 3σ²", "ms a picture"]) + " |")
     print("| --- | --- |" + " ---: |" * 9, flush=True)
     chunks = [(first, min(CHUNK, pictures - first)) for first in range(0, pictures, CHUNK)]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+    with WorkerProcesses(workers, time_limit=3600.0) as pool:
         for name in CONDITIONS:
             if not only or name in only:
                 measured = pool.map(partial(measured_or_kept, keep, name, seed), *zip(*chunks, strict=True))

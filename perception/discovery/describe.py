@@ -15,14 +15,13 @@ import numpy as np
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import ObjectModel
 from cobot_lfd.frame import Frame
-from perception.assignment import quality
 from perception.discovery.face import with_face
 from perception.discovery.height import height, lifted
 from perception.discovery.polygon import middle, outline, symmetry
 from perception.discovery.propose import Thing
 from perception.discovery.template import Template, align, mean_silhouette
 from perception.mixture import Mixture
-from perception.outline_fit import OutlineFit, fit_outline
+from perception.outline_fit import OutlineFit, fit_outline, quality
 from perception.picture import Picture
 
 _BRIGHT = 0.85  # Of the usual brightness; a face that is darker is a wall.
@@ -109,7 +108,7 @@ def _upper_side(picture: Picture, thing: Thing) -> Thing:
 def _fit(
     picture: Picture, thing: Thing, model: ObjectModel, camera: Camera, start: Frame
 ) -> OutlineFit | None:
-    return fit_outline(picture, camera, model, Mixture.of(thing.region.colour, thing.table), start)
+    return fit_outline(picture, camera, model, Mixture.of(thing.region.colour, thing.table), (start,))
 
 
 def _model(name: str, template: Template, things: Sequence[Thing], base_z: float) -> ObjectModel | None:

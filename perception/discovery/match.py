@@ -9,8 +9,8 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
-from perception.discovery.palette import shares
 from perception.discovery.propose import Thing
+from perception.table import shares
 
 # Differences that count as one unit of unlikeness. Light, shadow and the walls that are seen or not make two
 # pictures of one thing differ by less.

@@ -6,10 +6,9 @@ from numpy.typing import NDArray
 
 from cobot_lfd.arrays import Array
 from perception.picture import Picture
-from perception.table import chromaticity
+from perception.robust import robust_deviation
+from perception.table import shares
 
-_PLANE = np.array([[2.0, -1.0, -1.0], [0.0, np.sqrt(3), -np.sqrt(3)]]).T / np.sqrt(6)
-"""Two axes of the plane in which the shares of red, green and blue lie, shape (3, 2)."""
 _LEAST = 0.02  # Distance from the table's shares from where on a colour may be another one.
 _N_NOISE = 5.0  # Standard deviations of the table's shares that never count as another colour.
 _BIN = 0.02  # Of the histogram.
@@ -17,11 +16,6 @@ _REACH = 1.0  # The shares' plane lies within this distance of the table's share
 _FEWEST = 40  # Pixels of a peak.
 _APART = 0.08  # Distance of two peaks that are two colours.
 _EVERY = 5  # Pixels from one to the next where a part of them is enough.
-
-
-def shares(colours: Array) -> Array:
-    """Colours, shape (..., 3), as places in the plane of their shares of red, green and blue, (..., 2)."""
-    return np.asarray(chromaticity(colours) @ _PLANE)
 
 
 def label_colours(picture: Picture, table: Array) -> NDArray[np.int_]:
@@ -33,7 +27,7 @@ def label_colours(picture: Picture, table: Array) -> NDArray[np.int_]:
     """
     difference = shares(picture.astype(np.float64)) - shares(table)
     distance = np.linalg.norm(difference, axis=-1)
-    noise = 1.4826 * float(np.median(distance.ravel()[::_EVERY]))
+    noise = robust_deviation(distance.ravel()[::_EVERY])
     foreground = distance > max(_LEAST, _N_NOISE * noise)
     labels = np.full(distance.shape, -1)
     peaks = _peaks(difference[foreground])

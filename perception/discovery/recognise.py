@@ -10,15 +10,14 @@ from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
-from perception.assignment import quality
-from perception.coarse_pose import guess_poses
-from perception.discovery.palette import shares
+from perception.coarse_pose import Comparison
 from perception.discovery.propose import Thing, propose
 from perception.feature_detector import FeatureDetector
 from perception.mixture import Mixture
-from perception.outline_fit import OutlineFit, fit_outline
+from perception.outline_fit import OutlineFit, fit_outline, quality
 from perception.picture import Picture
 from perception.silhouette import silhouette_hull
+from perception.table import shares
 
 _MOST_UNLIKE = 0.12  # In the plane of the shares of red, green and blue: another colour.
 _BRIGHTNESS = 2.2  # Factor between two brightnesses from where on they are two colours: black is no white.
@@ -75,15 +74,14 @@ def _try(picture: Picture, camera: Camera, model: ObjectModel, thing: Thing) -> 
     region = thing.region
     if not _same_colour(region.colour, 255.0 * model.colour, thing.table):
         return ""
-    starts = guess_poses(region, model, camera, 1)
+    starts = Comparison.of(region, model, camera, 1).poses()
     expected = cv2.contourArea(silhouette_hull(model, starts[0], camera).astype(np.float32))
     seen = cv2.contourArea(region.hull.astype(np.float32))
     if not _LEAST_AREA * expected < seen < _MOST_AREA * expected:
         edge = "; it is cut off by the picture's edge" if region.at_border else ""
         return f"what has its colour has {100 * seen / expected:.0f} % of its size{edge}."
     mixture = Mixture.of(region.colour, thing.table)
-    fits = [fit_outline(picture, camera, model, mixture, start) for start in starts]
-    best = max((fit for fit in fits if fit is not None), key=quality, default=None)
+    best = fit_outline(picture, camera, model, mixture, starts)
     if best is None or best.found < _LEAST_FOUND:
         return f"only {100 * (best.found if best else 0.0):.0f} % of its outline is seen."
     if best.residual > _MOST_RESIDUAL:
