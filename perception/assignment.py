@@ -21,24 +21,43 @@ def assign(
 
     Args:
         models: The objects.
-        tried: For each the fits to the regions of its colour, or why there is none; objects of the same
-            colour have the same regions.
+        tried: For each the fits to some regions, or why there is none; objects of the same colour have the
+            same regions, and no region has two colours.
 
     Returns:
         For each model its fit, None where there is none.
     """
     chosen: list[OutlineFit | None] = [None] * len(models)
     for alike in _groups([tuple(model.colour) for model in models]):
-        results = [tried[i] for i in alike]
-        costs = [[-quality(r) if isinstance(r, OutlineFit) else _IMPOSSIBLE for r in row] for row in results]
-        for row, column in zip(*linear_sum_assignment(np.array(costs).reshape(len(alike), -1)), strict=True):
-            found = results[row][column]
-            chosen[alike[row]] = found if isinstance(found, OutlineFit) else None
+        for i, fit in zip(alike, best_together([tried[i] for i in alike]), strict=True):
+            chosen[i] = fit
+    return named_from_the_left(models, chosen)
+
+
+def best_together(tried: Sequence[Sequence[OutlineFit | str]]) -> list[OutlineFit | None]:
+    """One fit for each of m objects to k regions, such that no region is given to two.
+
+    Args:
+        tried: The fits of each object to each region, or why there is none, m times k.
+    """
+    costs = [[-quality(r) if isinstance(r, OutlineFit) else _IMPOSSIBLE for r in row] for row in tried]
+    chosen: list[OutlineFit | None] = [None] * len(tried)
+    for row, column in zip(*linear_sum_assignment(np.array(costs).reshape(len(tried), -1)), strict=True):
+        found = tried[row][column]
+        chosen[row] = found if isinstance(found, OutlineFit) else None
+    return chosen
+
+
+def named_from_the_left(
+    models: Sequence[ObjectModel], chosen: Sequence[OutlineFit | None]
+) -> list[OutlineFit | None]:
+    """The same fits; of several models that look the same, the first has what lies farthest to the left."""
+    named = list(chosen)
     for alike in _groups([_looks(model) for model in models]):
         fits = sorted((f for i in alike if (f := chosen[i]) is not None), key=lambda f: -f.frame.position[1])
         for place, i in enumerate(alike):
-            chosen[i] = fits[place] if place < len(fits) else None
-    return chosen
+            named[i] = fits[place] if place < len(fits) else None
+    return named
 
 
 def _groups(keys: Sequence[object]) -> list[list[int]]:

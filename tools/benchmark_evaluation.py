@@ -160,8 +160,9 @@ def _memory(contender: Contender, n: int) -> None:
             if len(sizes) % max(1, n // 40) == 0:
                 print(f"memory of a worker after {len(sizes)} episodes: {sizes[-1]:.0f} MB", flush=True)
     warm = sizes[n // 10 :]
-    least, most = min(warm), max(warm)
-    print(f"from {n // 10} to {n} episodes: {least:.0f} to {most:.0f} MB ({most / least - 1:+.1%})")
+    growth, start = np.polyfit(np.linspace(0.0, 1.0, len(warm)), warm, 1)
+    print(f"from {n // 10} to {n} episodes: {min(warm):.0f} to {max(warm):.0f} MB", end="; ")
+    print(f"a line through all of them grows by {growth:.1f} MB ({growth / start:+.1%})")
 
 
 def _resident_after(trial: Trial) -> float:

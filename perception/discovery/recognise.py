@@ -4,17 +4,17 @@ from collections.abc import Sequence
 
 import cv2
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from cobot_lfd.arrays import Array
 from cobot_lfd.camera import Camera
 from cobot_lfd.detection import Detection, NotSeen, ObjectModel
 from cobot_lfd.frame import Frame
+from perception.assignment import best_together, named_from_the_left
 from perception.coarse_pose import Comparison
 from perception.discovery.propose import Thing, propose
 from perception.feature_detector import FeatureDetector
 from perception.mixture import Mixture
-from perception.outline_fit import OutlineFit, fit_outline, quality
+from perception.outline_fit import OutlineFit, fit_outline
 from perception.picture import Picture
 from perception.silhouette import silhouette_hull
 from perception.table import shares
@@ -62,7 +62,7 @@ def _by_outline(
     if not models:
         return []
     tried = [[_try(picture, camera, model, thing) for thing in things] for model in models]
-    chosen = _assigned(models, tried)
+    chosen = named_from_the_left(models, best_together(tried))
     return [
         _detection(model, camera, fit) if fit is not None else NotSeen(model.name, _why_not(things, results))
         for model, fit, results in zip(models, chosen, tried, strict=True)
@@ -87,33 +87,6 @@ def _try(picture: Picture, camera: Camera, model: ObjectModel, thing: Thing) -> 
     if best.residual > _MOST_RESIDUAL:
         return f"what has its colour differs from its outline by {best.residual:.1f} px."
     return best
-
-
-def _assigned(
-    models: Sequence[ObjectModel], tried: Sequence[Sequence[OutlineFit | str]]
-) -> list[OutlineFit | None]:
-    """One fit for each model, no region given to two, such that all together fit best.
-
-    Of several models that look the same, the first is what lies farthest to the left as the robot sees it.
-    """
-    chosen: list[OutlineFit | None] = [None] * len(models)
-    if not any(tried):
-        return chosen
-    costs = [[-quality(r) if isinstance(r, OutlineFit) else 0.0 for r in results] for results in tried]
-    for row, column in zip(*linear_sum_assignment(np.array(costs)), strict=True):
-        found = tried[row][column]
-        chosen[row] = found if isinstance(found, OutlineFit) else None
-    for alike in _groups(models):
-        fits = sorted((f for i in alike if (f := chosen[i]) is not None), key=lambda f: -f.frame.position[1])
-        for place, i in enumerate(alike):
-            chosen[i] = fits[place] if place < len(fits) else None
-    return chosen
-
-
-def _groups(models: Sequence[ObjectModel]) -> list[list[int]]:
-    """The numbers of the models that look the same."""
-    looks = [(model.outline.tobytes(), model.z, model.colour.tobytes()) for model in models]
-    return [[i for i, other in enumerate(looks) if other == look] for look in dict.fromkeys(looks)]
 
 
 def _same_colour(seen: Array, expected: Array, table: Array) -> bool:
