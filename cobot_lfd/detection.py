@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from cobot_lfd.appearance import Appearance
 from cobot_lfd.arrays import Array, frozen_array
 from cobot_lfd.frame import Frame
@@ -24,7 +26,10 @@ class ObjectModel:
         colour: Colour under white light, red, green, blue in 0..1, shape (3,).
         symmetry: Number of turns within a full circle that look the same: 4 for a square, 2 for a rectangle,
             1 where the outline tells the orientation.
-        base_z: Height of the object's foot in the world [m]; the walls below the outline may be seen too.
+        base_z: Height in the world of the object's foot below each corner [m], shape (n,) or one for all; the
+            walls between may be seen, too. Where a wall stands beside a raised floor, that is its foot; where
+            the height changes, the outline has two corners in one place.
+        is_round: Whether the outline stands for a circle, whose angle means nothing.
         holes: Contours of openings in the same plane [m]: a container's inner rim.
         ground: Colour of what it stands on under white light, shape (3,), where that is known; it tells how
             the object's colour must look under the light in a picture, and how bright it must be.
@@ -38,7 +43,8 @@ class ObjectModel:
     z: float
     colour: Array
     symmetry: int
-    base_z: float
+    base_z: Array
+    is_round: bool = False
     holes: tuple[Array, ...] = ()
     ground: Array | None = None
     found_by: DetectorKind = "shape"
@@ -48,6 +54,9 @@ class ObjectModel:
     def __post_init__(self) -> None:
         """Copy and check."""
         object.__setattr__(self, "outline", frozen_array(self.outline, "outline", (None, 2)))
+        n = len(self.outline)
+        feet = self.base_z if np.ndim(self.base_z) else np.full(n, self.base_z)
+        object.__setattr__(self, "base_z", frozen_array(feet, "base_z", (n,)))
         object.__setattr__(self, "colour", frozen_array(self.colour, "colour", (3,)))
         if self.ground is not None:
             object.__setattr__(self, "ground", frozen_array(self.ground, "ground", (3,)))

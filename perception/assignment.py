@@ -67,4 +67,4 @@ def _groups(keys: Sequence[object]) -> list[list[int]]:
 
 def _looks(model: ObjectModel) -> tuple[object, ...]:
     """What two objects that look the same have in common."""
-    return model.outline.tobytes(), model.z, model.base_z, model.colour.tobytes()
+    return model.outline.tobytes(), model.z, model.base_z.tobytes(), model.colour.tobytes()

@@ -64,7 +64,7 @@ class Comparison:
         directions = np.linspace(0.0, 2 * np.pi, _N_DIRECTIONS, endpoint=False)
         normals = np.column_stack([np.cos(directions), np.sin(directions)])
         reach = (region.hull @ normals.T).max(axis=0) + 0.5 * scale
-        middle = camera.to_plane(region.centroid, 0.5 * (model.z + model.base_z))
+        middle = camera.to_plane(region.centroid, 0.5 * (model.z + model.base_z.min()))
         angles = np.arange(0.0, 2 * np.pi / model.symmetry - 1e-9, _ANGLE_STEP)
         corners = _turned(corners_in_world(model, Frame(np.zeros(2), 0.0)), angles, middle)
         return cls(

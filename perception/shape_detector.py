@@ -22,9 +22,7 @@ from perception.silhouette import silhouette_hull
 
 _LEAST_AREA, _MOST_AREA = 0.3, 1.7  # Of the expected area; less is covered or something else.
 _LEAST_FOUND = 0.4  # Share of the outline that must be seen.
-# Share of the outline where only the table is seen. An object may enclose a raised floor of the table's
-# colour, which hides the foot of a wall: a tenth of the outline of the scenes' hole.
-_MOST_EMPTY = 0.13
+_MOST_EMPTY = 0.13  # Share of the outline where only the table is seen.
 _MOST_BETWEEN = 0.3  # The same where something lies across an object, whose colour may be like the table's.
 _MOST_RESIDUAL = 1.0  # Root mean square distance of the edges from the outline [px].
 _MOST_DEVIATION = 0.003  # Standard deviation of the position that is still worth telling [m].
@@ -174,11 +172,15 @@ def _sticks_out(region: Region, hull: Array) -> float:
 def _detection(model: ObjectModel, camera: Camera, fit: OutlineFit) -> Detection:
     frame = Frame(fit.frame.position, _representative(fit.frame.angle, model.symmetry))
     corners = np.column_stack([frame.apply(model.outline), np.full(len(model.outline), model.z)])
+    covariance = fit.covariance.copy()
+    if model.is_round:  # Its angle may be anything within a turn of the polygon that stands for it.
+        covariance[2, :] = covariance[:, 2] = 0.0
+        covariance[2, 2] = (2 * np.pi / model.symmetry) ** 2 / 12
     return Detection(
         name=model.name,
         frame=frame,
         symmetry=model.symmetry,
-        covariance=fit.covariance,
+        covariance=covariance,
         confidence=fit.found,
         contour=camera.project(corners),
     )

@@ -42,7 +42,7 @@ class Contour:
 def corners_in_world(model: ObjectModel, frame: Frame) -> Array:
     """The corners of the outline and, below them, of the foot [m], shape (2 n, 3)."""
     flat = frame.apply(model.outline)
-    heights = np.repeat([model.z, model.base_z], len(flat))
+    heights = np.concatenate([np.full(len(flat), model.z), model.base_z])
     return np.column_stack([np.vstack([flat, flat]), heights])
 
 

@@ -9,6 +9,7 @@ from cobot_lfd.detection import ObjectModel
 from cobot_lfd.marker import Marker
 from scenes.artwork import MarkerPrint, marker_size
 from scenes.description import SceneDescription
+from scenes.feet import with_feet
 from scenes.shapes import Assembly, Ball, Box, Container, ObjectDescription
 from scenes.union import union_outlines
 
@@ -34,6 +35,7 @@ def object_model(name: str, item: ObjectDescription) -> ObjectModel:
         colour=np.array(item.colour),
         symmetry=_N_CIRCLE if isinstance(item, Ball) else _symmetry(outline),
         base_z=base_z,
+        is_round=isinstance(item, Ball),
         holes=tuple(holes),
         found_by=item.found_by,
         marker=_marker(name, item),
@@ -47,23 +49,26 @@ def _marker(name: str, item: ObjectDescription) -> Marker | None:
     return Marker(name, item.print.number, marker_size(item.size[:2]), item.size[2])
 
 
-def _seen_from_above(item: ObjectDescription) -> tuple[Array, list[Array], float, float]:
-    """Outline [m], openings [m], height and foot of the uppermost contour [m]."""
+def _seen_from_above(item: ObjectDescription) -> tuple[Array, list[Array], float, Array]:
+    """Outline [m], openings [m], height of the uppermost contour and of the foot below its corners [m]."""
     match item:
         case Box():
-            return _rectangle(item.size[0], item.size[1]), [], item.size[2], 0.0
+            return _rectangle(item.size[0], item.size[1]), [], item.size[2], np.zeros(4)
         case Container():
-            return _rectangle(*item.outer_size), [_rectangle(*item.inner_size)], item.height, 0.0
+            rim, opening = _rectangle(*item.outer_size), _rectangle(*item.inner_size)
+            return rim, [opening], item.height, np.zeros(4)
         case Ball():
             angles = 2 * np.pi * np.arange(_N_CIRCLE) / _N_CIRCLE
             radius = 0.5 * item.diameter
             same_area = radius * np.sqrt(2 * np.pi / _N_CIRCLE / np.sin(2 * np.pi / _N_CIRCLE))
             circle = same_area * np.column_stack([np.cos(angles), np.sin(angles)])
-            return circle, [], radius, radius
+            return circle, [], radius, np.full(_N_CIRCLE, radius)
         case Assembly():
             tops = [box for box in item.boxes if box.high[2] > item.height - _SAME_HEIGHT]
             outline, *holes = union_outlines([(*box.low[:2], *box.high[:2]) for box in tops])
-            return outline, [hole[::-1] for hole in holes], item.height, 0.0
+            floors = [(box.low, box.high) for box in item.boxes if box.colour not in (None, item.colour)]
+            outline, feet = with_feet(outline, floors)
+            return outline, [hole[::-1] for hole in holes], item.height, feet
 
 
 def _rectangle(length: float, width: float) -> Array:

@@ -26,7 +26,7 @@ from tests.app_examples import detection
 CAMERA = Camera.looking_at([0.5, 0, 1.2], [0.5, 0, 0], up=[1, 0, 0], field_of_view=0.5, width=640, height=480)
 GREY: Picture = np.full((480, 640, 3), 120, dtype=np.uint8)
 CORNERS = 0.02 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-CUBE = ObjectModel("cube", CORNERS, 0.04, np.array([1.0, 0.0, 0.0]), symmetry=4, base_z=0.0)
+CUBE = ObjectModel("cube", CORNERS, 0.04, np.array([1.0, 0.0, 0.0]), symmetry=4, base_z=np.zeros(4))
 
 
 def is_near(picture: Picture, pixel: Array, colour: tuple[int, int, int], scale: int = 2) -> bool:

@@ -191,7 +191,7 @@ def test_the_right_colour_and_size_in_the_wrong_shape_is_not_seen() -> None:
             [3, -1],
         ]
     )
-    other = replace(MODELS[0], outline=0.0085 * cross)
+    other = replace(MODELS[0], outline=0.0085 * cross, base_z=np.zeros(12))
     assert isinstance(detect(shot(0).picture, CAMERA, [other])[0], NotSeen)
 
 
@@ -238,7 +238,9 @@ def drawn(camera: Camera, model: ObjectModel, frame: Frame) -> Picture:
 @pytest.mark.parametrize("angle", [-2.5, -0.4, 0.3, 1.9, 3.1])
 def test_an_outline_without_symmetry_tells_the_whole_angle(angle: float) -> None:
     corners = np.array([[0, 0], [6, 0], [6, 2], [2, 2], [2, 4], [0, 4]]) * 0.01 - [0.025, 0.015]
-    model = ObjectModel("bracket", corners, 0.0, np.array([0.8, 0.2, 0.1]), symmetry=1, base_z=0.0)
+    model = ObjectModel(
+        "bracket", corners, 0.0, np.array([0.8, 0.2, 0.1]), symmetry=1, base_z=np.zeros(len(corners))
+    )
     camera = Camera.looking_at(
         [0.5, 0.1, 0.6], [0.5, 0.0, 0.0], up=[1, 0, 0], field_of_view=0.5, width=320, height=240
     )

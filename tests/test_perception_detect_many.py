@@ -10,6 +10,7 @@ from cobot_lfd.pose import Pose
 from perception import detect
 from robots import Arm, Kinematics, load_robot
 from scenes import SceneDescription, World, load_scene, object_models
+from scenes.placement import draw_placements
 from tests.perception_examples import CAMERA, MODELS, SCENE, errors, shot
 
 pytestmark = pytest.mark.simulator
@@ -101,6 +102,37 @@ def test_the_arm_may_reach_across_the_table() -> None:
         for item in found:
             if isinstance(item, Detection):
                 assert np.linalg.norm(errors(item, truth[item.name])[:2]) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "thing"), [("handover", "hand"), ("brushing", "dustpan"), ("ball_in_hole", "hole")]
+)
+def test_walls_that_stand_on_a_floor_do_not_draw_their_object_aside(name: str, thing: str) -> None:
+    """Read as if they stood on the table, they would displace the hand by 0.4 mm towards its wrist."""
+    scene, off = load_scene(name), []
+    camera, generator = scene.camera.camera, np.random.default_rng(0)
+    models = [model for model in object_models(scene) if model.name == thing]
+    with World(scene, 0) as world:
+        for _ in range(10):
+            frames = draw_placements(scene, generator)
+            for each, frame in frames.items():
+                world.place(each, frame)
+            (found,) = detect(world.take_picture(), camera, models)
+            in_world = errors(found, frames[thing])[:2]
+            off.append(frames[thing].rotation.T @ in_world)
+    assert (np.abs(np.mean(off, axis=0)) < 0.04e-3).all()
+
+
+def test_the_angle_of_a_ball_is_said_to_be_unknown() -> None:
+    scene = load_scene("ball_in_hole")
+    with World(scene, 3) as world:
+        found = detect(world.take_picture(), scene.camera.camera, object_models(scene))
+    (ball,) = (thing for thing in found if thing.name == "ball")
+    assert isinstance(ball, Detection)
+    assert ball.covariance[2, 2] == pytest.approx(
+        np.var(np.linspace(-np.pi, np.pi, 100001) / ball.symmetry), rel=1e-3
+    )
+    assert (ball.covariance[2, :2] == 0.0).all()
 
 
 @pytest.mark.parametrize("seed", [1008, 10018])

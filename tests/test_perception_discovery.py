@@ -131,7 +131,7 @@ def test_a_rounded_outline_of_many_short_sides_is_found() -> None:
     camera = scene.camera.camera
     things = propose(picture, camera)
     red = next(thing for thing in things if thing.region.colour.argmax() == 0)
-    ball = ObjectModel("ball", outline, 0.02, red.region.colour / 255.0, 8, 0.02)
+    ball = ObjectModel("ball", outline, 0.02, red.region.colour / 255.0, 8, np.full(13, 0.02))
     (seen,) = recognise(picture, camera, [ball], things)
     assert isinstance(seen, Detection), seen
     assert np.linalg.norm(seen.frame.position - truth.position) < 0.001  # [m]

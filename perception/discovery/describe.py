@@ -123,7 +123,7 @@ def _model(name: str, template: Template, things: Sequence[Thing], base_z: float
         z=template.z,
         colour=colour,
         symmetry=symmetry(corners),
-        base_z=base_z,
+        base_z=np.full(len(corners), base_z),
     )
 
 

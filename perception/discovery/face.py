@@ -93,7 +93,8 @@ def _upright(
         )
     except ValueError:  # Not all of it is in the picture.
         return model
-    return replace(model, outline=corners, z=z, appearance=face)
+    feet = np.full(len(corners), model.base_z.min())
+    return replace(model, outline=corners, z=z, base_z=feet, appearance=face)
 
 
 def _varied(picture: Picture, thing: Thing) -> bool:

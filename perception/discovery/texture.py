@@ -151,7 +151,7 @@ def _model(picture: Picture, camera: Camera, places: Array) -> ObjectModel | Non
         z=0.0,
         colour=0.5 * (low + high) / 255.0,
         symmetry=1,
-        base_z=0.0,
+        base_z=np.zeros(len(face.outline)),
         found_by="features",
         appearance=face,
     )
