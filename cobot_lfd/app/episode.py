@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from cobot_lfd.app.compliance import Compliance, StiffnessField
-from cobot_lfd.app.detour import detours
+from cobot_lfd.app.detour import detours, past_walls
 from cobot_lfd.app.execute import Observer, execute
 from cobot_lfd.app.geometry import farthest_from
 from cobot_lfd.app.perceive import View, perceive
@@ -168,7 +168,7 @@ def _attempt(
             path,
             turns,
             around,
-            detours=detours(notes.path, _aside(bench, view)),
+            detours=_detours(bench, view, notes.path),
             timing=bench.timing,
         )
         carry = next(stage.trajectory for stage in stages if stage.name == "carry")
@@ -235,6 +235,28 @@ def _surroundings(bench: Bench, view: View) -> Surroundings:
     around = obstacles(scene, {name: frame for name, frame in frames.items() if name != pick})
     part = object_obstacle(scene, pick, frames[pick]) if scene.task.grips else None
     return Surroundings(around, part)
+
+
+def _detours(bench: Bench, view: View, path: GeneratedPath) -> Iterator[Array]:
+    """Ways to go instead of a path where that is not free, the best first."""
+    aside = _aside(bench, view)
+    yield from detours(path, aside)
+    walls = _walls_of_goal(bench, view)
+    if walls is not None:
+        yield from past_walls(path, walls, aside)
+
+
+def _walls_of_goal(bench: Bench, view: View) -> Obstacle | None:
+    """The boxes of what the path ends in that are in the carried part's way; None where there are none."""
+    task = bench.scene.task
+    if task.place not in view.frames:
+        return None
+    goal = object_obstacle(bench.scene, task.place, view.frames[task.place])
+    lifted = task.carry_height - task.grasp_height  # The part stood on the table.
+    high = goal.centres[:, 2] + goal.half_sizes[:, 2] > lifted
+    if not high.any():
+        return None
+    return replace(goal, centres=goal.centres[high], half_sizes=goal.half_sizes[high])
 
 
 def _aside(bench: Bench, view: View) -> list[Obstacle]:
