@@ -1,4 +1,4 @@
-"""Ways round what stands in the way: a generated path, bent most where the demonstrations leave it free."""
+"""Ways round what a path would hit: the path, bent most where the demonstrations leave it free."""
 
 from collections.abc import Iterator, Sequence
 from itertools import product
