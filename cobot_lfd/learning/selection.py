@@ -18,7 +18,8 @@ N_GROWN = 3
 """So many of the best sets of each size are made larger by each further frame."""
 
 CONFIDENCE = 0.975
-"""A set is worse than the best if a paired t-test says so at this level (one-sided) ..."""
+"""A set is worse than the best if a paired t-test says so at this level (one-sided), shared out among the
+frames that are not visited (Bonferroni), since each of them may help by chance ..."""
 
 MARGIN = 0.05
 """... and if its errors are larger by more than this part; what helps less is not worth a frame."""
@@ -110,7 +111,10 @@ def compare_frames(data: TaskData, oriented: Sequence[bool]) -> Selection:
         try_sets(tuple(sorted((*group, j))) for group in best for j in range(n_frames) if j not in group)
     logs = {group: np.log(error + floor) for group, error in errors.items()}
     best_logs = logs[min(errors, key=score)]
-    good = [(len(group), score(group), group) for group in errors if _as_good(logs[group], best_logs)]
+    confidence = 1.0 - (1.0 - CONFIDENCE) / max(n_frames - len(visited), 1)
+    good = [
+        (len(group), score(group), group) for group in errors if _as_good(logs[group], best_logs, confidence)
+    ]
     chosen = min(good)[2]
     others = (tuple(j for j in chosen if j != out) for out in chosen if len(chosen) > 1)
     try_sets([*others, *(tuple(sorted((*chosen, j))) for j in range(n_frames) if j not in chosen)])
@@ -127,9 +131,9 @@ def _visited(data: TaskData) -> set[int]:
     return {int(j) for j in np.flatnonzero(nearest < VISITED * task_size(data))}
 
 
-def _as_good(candidate: Array, best: Array) -> bool:
+def _as_good(candidate: Array, best: Array, confidence: float) -> bool:
     """Whether a paired t-test finds no difference, or one that does not matter."""
     difference = candidate - best
     n = len(difference)
-    chance = stdtrit(n - 1, CONFIDENCE) * difference.std(ddof=1) / np.sqrt(n)
+    chance = stdtrit(n - 1, confidence) * difference.std(ddof=1) / np.sqrt(n)
     return bool(difference.mean() <= max(chance, np.log1p(MARGIN)))
