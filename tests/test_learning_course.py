@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from cobot_lfd.arrays import Array
+from cobot_lfd.demonstration import Demonstration
+from cobot_lfd.frame import Frame
 from cobot_lfd.learning.course.course import fit_course
 from cobot_lfd.learning.course.features import FeatureSet, scene_features
 from cobot_lfd.learning.course.phase import (
@@ -165,6 +167,19 @@ def test_an_irrelevant_frame_is_dropped(seed: int) -> None:
     task = replace(TASKS[2], irrelevant=True)
     data = collect(demonstrations(task, 6, np.random.default_rng(seed)))
     assert selected(data, [True, False, False]) == ["start", "end"]
+
+
+@pytest.mark.parametrize("seed", [0, 58, 74])
+def test_none_of_many_frames_is_kept_because_one_of_them_helps_by_chance(seed: int) -> None:
+    """In the last two of these, one of four would be kept if each had the whole chance of error."""
+    rng = np.random.default_rng(seed)
+    shown = [d for d in demonstrations(TASKS[1], 6, rng) if isinstance(d, Demonstration)]
+    crowded = []
+    for each in shown:
+        others = {f"other{i}": Frame(rng.uniform(-1, 1, 2), rng.uniform(-3, 3)) for i in range(4)}
+        crowded.append(Demonstration(each.path, {**each.frames, **others}, each.times))
+    data = collect(crowded)
+    assert selected(data, [True, True, False, False, False, False]) == ["start", "end"]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -85,7 +85,7 @@ def main(
     sets: int = 30,
     demos: int = 6,
     recorded: Path | None = None,
-    seed: int = 50_000,
+    seed: int = 60_000,
     workers: int = 1,
 ) -> int:
     """Run the sets that are missing in a file, and print the table of all that are in it.
@@ -98,7 +98,7 @@ def main(
         demos: Demonstrations in a set.
         recorded: Folder with a folder of recorded demonstrations per scene, from which the sets are drawn.
         seed: Of the first demonstration of the first set, where nothing is recorded; each further one has the
-            next. Nothing was tuned on those from 50000 on.
+            next. Nothing was tuned on those from 60000 on.
         workers: Processes.
     """
     names = [f"{name}@{variant}" for name in scenes or scene_names()]
