@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -93,13 +94,13 @@ class Person:
         hurried: Simulated time that passed in a hurry, of which real time is not asked [s].
     """
 
-    def __init__(self, browser: object, studio: Studio) -> None:
+    def __init__(self, browser: Any, studio: Studio) -> None:
         self.studio = studio
         self.session = studio.session
         self.hurried = 0.0
         self._nudge = 0.5  # [px]
         # The browser's library is imported only where there is a browser, so its type is not named here.
-        self.page = browser.new_page(viewport=WINDOW)  # type: ignore[attr-defined]
+        self.page = browser.new_page(viewport=WINDOW)
         self.page.set_default_timeout(1000 * PATIENCE)
         before = set(studio.server.get_clients())
         self.page.goto(studio.address)

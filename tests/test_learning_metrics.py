@@ -7,27 +7,27 @@ from numpy.testing import assert_allclose
 from cobot_lfd.frame import FrameKind
 from cobot_lfd.learning import metrics
 
-O, L = FrameKind.ORIENTED, FrameKind.ORIENTATION_LESS  # noqa: E741  # the paper's letters
+ORIENTED, LESS = FrameKind.ORIENTED, FrameKind.ORIENTATION_LESS
 LINE = np.linspace([0.0, 0.0], [3.0, 4.0], 50)[None]
 
 
 def test_f1_of_a_right_answer_is_one() -> None:
-    assert metrics.identifier_f1({"a": O, "b": L}, {"a": O, "b": L}).score == 1.0
+    assert metrics.identifier_f1({"a": ORIENTED, "b": LESS}, {"a": ORIENTED, "b": LESS}).score == 1.0
 
 
 def test_f1_with_one_oriented_frame_missed_is_two_thirds() -> None:
     """The paper's 0.67: precision 1/2, recall 1."""
-    result = metrics.identifier_f1({"a": L, "b": L}, {"a": O, "b": L})
+    result = metrics.identifier_f1({"a": LESS, "b": LESS}, {"a": ORIENTED, "b": LESS})
     assert (result.precision, result.recall) == (0.5, 1.0)
     assert result.score == pytest.approx(2 / 3)
 
 
 def test_f1_is_undefined_where_no_frame_is_called_orientation_less() -> None:
-    assert np.isnan(metrics.identifier_f1({"a": O, "b": O}, {"a": O, "b": L}).score)
+    assert np.isnan(metrics.identifier_f1({"a": ORIENTED, "b": ORIENTED}, {"a": ORIENTED, "b": LESS}).score)
 
 
 def test_f1_of_a_swapped_answer_is_zero() -> None:
-    assert metrics.identifier_f1({"a": L, "b": O}, {"a": O, "b": L}).score == 0.0
+    assert metrics.identifier_f1({"a": LESS, "b": ORIENTED}, {"a": ORIENTED, "b": LESS}).score == 0.0
 
 
 def test_a_straight_line_is_efficient_and_has_no_edge() -> None:

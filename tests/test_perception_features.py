@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -240,5 +241,6 @@ def test_a_region_beyond_the_picture_or_too_small_is_told() -> None:
 
 
 def test_an_appearance_that_is_no_picture_is_told() -> None:
+    no_picture: Any = np.zeros((3, 3))
     with pytest.raises(ValueError, match=r"image of 'x' has shape \(3, 3\) and type float64; it must"):
-        Appearance("x", np.zeros((3, 3)), outline_of("small"), 0.001, 0.0, np.zeros(2))  # type: ignore[arg-type]  # floats
+        Appearance("x", no_picture, outline_of("small"), 0.001, 0.0, np.zeros(2))

@@ -41,7 +41,7 @@ class WorldGMR:
         times = np.linspace(0.0, 1.0, _N_STEPS)[:, None]
         return cls(np.asarray(mixture.predict(np.array([0]), times)))
 
-    def reproduce(self, frames: Mapping[str, Frame]) -> Array:  # noqa: ARG002 - it is the point of this baseline
+    def reproduce(self, frames: Mapping[str, Frame]) -> Array:  # noqa: ARG002 - that frames are ignored is the point
         """The same path for every scene [m], shape (T, 2)."""
         return self.mean
 

@@ -21,6 +21,9 @@ from cobot_lfd.app.run_folder import RESULTS, RunFolder
 from cobot_lfd.app.summary import Summary
 from cobot_lfd.errors import CobotError
 
+_UNSPOILT = Sweep()
+"""Nothing is made harder."""
+
 
 def evaluate(
     models: Positional[tuple[Path, ...]] = (),
@@ -40,7 +43,7 @@ def evaluate(
     videos: Literal["none", "failures"] = "none",
     covered: bool = False,
     camera: Path | None = None,
-    sweep: OmitArgPrefixes[Sweep] = Sweep(),  # noqa: B008 - a value that does not change
+    sweep: OmitArgPrefixes[Sweep] = _UNSPOILT,
     json: bool = False,
 ) -> int:
     """Perform the task in many new scenes and count how often it is done.
